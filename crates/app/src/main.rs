@@ -1,0 +1,3 @@
+//! Bouncing-ball simulation from the command line.
+
+fn main() {}

@@ -1,0 +1,81 @@
+//! What happens to a ball, and how a run ends.
+
+use crate::body::State;
+use crate::counters::Counters;
+use nalgebra::{Point3, Vector3};
+
+/// What happened.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum EventKind {
+    /// The ball hit a surface and was answered.
+    Impact,
+    /// Bouncing has ended, sliding begins.
+    Slide,
+    /// The ball came to rest.
+    Rest,
+    /// Contact was lost.
+    Leave,
+    /// A resting ball began to move.
+    Wake,
+}
+
+/// One event of one ball at one surface. A simultaneous impact at several surfaces is one event for each, at one time and
+/// with the same velocities.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Event {
+    /// When, in s from the start.
+    pub time: f64,
+    /// What happened.
+    pub kind: EventKind,
+    /// Index of the surface in the scene.
+    pub surface: usize,
+    /// The face of a mesh; none for planes and polygons.
+    pub face: Option<u32>,
+    /// The ball's centre, in m.
+    pub position: Point3<f64>,
+    /// Unit normal from the surface to the ball.
+    pub normal: Vector3<f64>,
+    /// Velocity just before, in m/s.
+    pub velocity_in: Vector3<f64>,
+    /// Velocity just after, in m/s.
+    pub velocity: Vector3<f64>,
+}
+
+/// How a ball moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Motion {
+    /// Free of every surface, or between two bounces.
+    Flying,
+    /// In lasting contact, and moving.
+    Sliding,
+    /// In lasting contact, and at rest.
+    Resting,
+}
+
+/// How the simulation of a ball ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Ending {
+    /// The scene's duration was reached.
+    Completed,
+    /// The ball used up its budget of events.
+    EventBudget,
+    /// Contacts kept answering each other without time passing.
+    UnresolvedContact,
+}
+
+/// A ball at the end of its simulation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Outcome {
+    /// How it ended.
+    pub ending: Ending,
+    /// When, in s.
+    pub time: f64,
+    /// Where, and how fast.
+    pub state: State,
+    /// How it moved at the end.
+    pub motion: Motion,
+    /// What the simulation evaluated.
+    pub counters: Counters,
+}

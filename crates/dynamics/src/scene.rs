@@ -1,0 +1,53 @@
+//! What is wanted: the surfaces, the balls, the effects and the method.
+
+use crate::body::Ball;
+use crate::effects::drag::Drag;
+use crate::effects::gravity::Gravity;
+use crate::surface::Surface;
+use crate::tolerance::RestThresholds;
+
+/// How flights are computed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Method {
+    /// Exact parabolas and straight lines; only under constant acceleration.
+    Exact,
+    /// Explicit Euler, the chapter's: order 1.
+    Euler {
+        /// h in s.
+        step: f64,
+    },
+    /// Semi-implicit (symplectic) Euler: order 1.
+    SemiImplicitEuler {
+        /// h in s.
+        step: f64,
+    },
+    /// The classical Runge-Kutta method: order 4.
+    Rk4 {
+        /// h in s.
+        step: f64,
+    },
+    /// Dormand and Prince's embedded pair of orders 5 and 4, its steps chosen by itself.
+    Adaptive {
+        /// Error allowed per step, relative to the size of the motion.
+        tolerance: f64,
+    },
+}
+
+/// A scene: plain data, checked when a plan is made of it.
+#[derive(Debug, Clone)]
+pub struct Scene {
+    /// For how long to simulate, in s, > 0.
+    pub duration: f64,
+    /// Gravity, if any.
+    pub gravity: Option<Gravity>,
+    /// Air resistance, if any.
+    pub drag: Option<Drag>,
+    /// What the balls bounce on. The order does not matter.
+    pub surfaces: Vec<Surface>,
+    /// The balls; each moves on its own.
+    pub balls: Vec<Ball>,
+    /// Thresholds of the rest test; from the size of the scene if none.
+    pub rest: Option<RestThresholds>,
+    /// The method; exact where the acceleration is constant, else adaptive, if none.
+    pub method: Option<Method>,
+}

@@ -1,0 +1,1 @@
+//! The clearance along a path, and its first entry.

@@ -1,0 +1,1 @@
+//! First contact of a moving ball with triangles and meshes.

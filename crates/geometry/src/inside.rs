@@ -1,0 +1,1 @@
+//! The determinant inside test.

@@ -1,0 +1,1 @@
+//! The path of a moving point as a polynomial over f in [0, 1].

@@ -1,0 +1,1 @@
+//! Planes, signed distance and sides.

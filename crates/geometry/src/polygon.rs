@@ -1,0 +1,1 @@
+//! Simple planar polygons, convex or concave.

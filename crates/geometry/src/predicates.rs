@@ -1,0 +1,1 @@
+//! Signs of orientation determinants, filtered and then exact.

@@ -1,0 +1,1 @@
+//! Projection along the dominant axis of a normal.

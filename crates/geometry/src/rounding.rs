@@ -1,0 +1,1 @@
+//! Rounding bounds as formulas in the unit roundoff.

@@ -1,0 +1,1 @@
+//! Triangles: normal, barycentric coordinates, closest point.
