@@ -41,14 +41,17 @@ pub fn find(text: &str) -> Result<Vec<Block<'_>>> {
     }
 }
 
-/// The text with the body of each block replaced by `make(name)`.
-pub fn replace(text: &str, mut make: impl FnMut(&str) -> Result<String>) -> Result<String> {
+/// The text with the body of each block replaced by `make(name, body)`.
+pub fn replace(text: &str, mut make: impl FnMut(&str, &str) -> String) -> Result<String> {
     let mut replaced = String::new();
     let mut from = 0;
     for block in find(text)? {
         replaced += &text[from..block.body.start];
-        replaced += make(block.name)?.trim_end();
-        replaced.push('\n');
+        let body = make(block.name, &text[block.body.clone()]);
+        if !body.is_empty() {
+            replaced += body.trim_end();
+            replaced.push('\n');
+        }
         from = block.body.end;
     }
     Ok(replaced + &text[from..])
@@ -70,7 +73,7 @@ mod tests {
 
     #[test]
     fn only_bodies_are_replaced_and_twice_is_once() {
-        let make = |name: &str| Ok(format!("new {name}\n\n"));
+        let make = |name: &str, _: &str| format!("new {name}\n\n");
         let once = replace(TEXT, make).expect("well formed");
         assert_eq!(
             once,

@@ -1,6 +1,7 @@
 //! The log of one step: the commands it ran, what they said, and what the step itself has to say.
 
 use crate::Result;
+use crate::project::show;
 use std::fs::{self, File};
 use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
@@ -60,13 +61,6 @@ impl Log {
     }
 }
 
-/// A command as one would type it.
-fn show(command: &Command) -> String {
-    let program = Path::new(command.get_program()).file_stem().unwrap_or_default();
-    let words = std::iter::once(program).chain(command.get_args());
-    words.map(|word| word.to_string_lossy()).collect::<Vec<_>>().join(" ")
-}
-
 fn went_well(line: &str) -> bool {
     let word = line.split_whitespace().next().unwrap_or_default();
     let progress =
@@ -85,10 +79,5 @@ mod tests {
         assert!(!went_well("test plane::tests::r05 ... FAILED"));
         assert!(!went_well("Compiling the list of balls failed"));
         assert!(!went_well("warning: unused variable"));
-    }
-
-    #[test]
-    fn a_command_is_shown_as_typed() {
-        assert_eq!(show(Command::new("/usr/bin/cargo").args(["fmt", "--all"])), "cargo fmt --all");
     }
 }

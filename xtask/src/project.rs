@@ -3,7 +3,7 @@
 use crate::Result;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
 use std::{env, fs};
 
 /// The workspace on disk.
@@ -72,7 +72,12 @@ impl Project {
         command
     }
 
-    /// The program `carom` in its release build, which cargo brings up to date first.
+    /// Brings the release build of `carom` up to date.
+    pub fn build_carom(&self) -> Result<()> {
+        output(&mut self.cargo(["build", "--release", "--package", "carom", "--bin", "carom"])).map(|_| ())
+    }
+
+    /// The program `carom` in its release build; cargo knows where it is.
     pub fn carom(&self) -> Command {
         self.cargo(["run", "--release", "--quiet", "--package", "carom", "--bin", "carom", "--"])
     }
@@ -122,6 +127,24 @@ impl Project {
     }
 }
 
+/// Standard output and standard error of a command that must end well.
+pub fn output(command: &mut Command) -> Result<(String, String)> {
+    // No terminal on any side: a program that asks for its width gets none.
+    let output = command.stdin(Stdio::null()).output()?;
+    let (out, err) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    if !output.status.success() {
+        return Err(format!("`{}` ended with {}\n{err}", show(command), output.status).into());
+    }
+    Ok((out.into_owned(), err.into_owned()))
+}
+
+/// A command as one would type it.
+pub fn show(command: &Command) -> String {
+    let program = Path::new(command.get_program()).file_stem().unwrap_or_default();
+    let words = std::iter::once(program).chain(command.get_args());
+    words.map(|word| word.to_string_lossy()).collect::<Vec<_>>().join(" ")
+}
+
 /// What stands behind the first line `key = ` of a manifest. The manifests are the project's own and keep one key to a
 /// line, so nothing here needs the whole of TOML.
 fn value<'a>(manifest: &'a str, key: &str) -> Option<&'a str> {
@@ -136,6 +159,11 @@ fn strings(value: &str) -> impl Iterator<Item = &str> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_command_is_shown_as_typed() {
+        assert_eq!(show(Command::new("/usr/bin/cargo").args(["fmt", "--all"])), "cargo fmt --all");
+    }
 
     #[test]
     fn a_manifest_is_read_by_whole_keys() {

@@ -1,9 +1,9 @@
 //! The generated blocks of the README: `cargo xtask readme` writes them, and `verify` compares them.
 
-use crate::project::Project;
+use crate::project::{Project, output};
 use crate::{Result, blocks};
 use std::fs;
-use std::process::{Command, ExitCode, Stdio};
+use std::process::ExitCode;
 
 /// Where the README is.
 pub const PATH: &str = "README.md";
@@ -11,30 +11,49 @@ pub const PATH: &str = "README.md";
 /// The job the program is for: a thousand balls let fall on a landscape.
 const MAIN_JOB: &str = "crates/app/scenes/jacksboro.toml";
 
-/// Writes the blocks anew; names those that changed.
+/// A job that is done at once, to see what its outputs look like.
+const SMALL_JOB: &str = "crates/app/scenes/barrier-1d.toml";
+
+/// Writes the blocks anew and names those that changed; a block that cannot be made stays as it is.
 pub fn rewrite() -> Result<ExitCode> {
     let project = Project::find()?;
+    project.build_carom()?;
     let old = project.read(PATH)?;
-    let new = blocks::replace(&old, |name| make(&project, name))?;
+    let (new, errors) = fresh(&project, &old)?;
     for name in differing(&old, &new)? {
         println!("{PATH}: block `{name}` is new");
     }
     if new != old {
         fs::write(project.root().join(PATH), new)?;
     }
-    Ok(ExitCode::SUCCESS)
+    for error in &errors {
+        eprintln!("error: {error}");
+    }
+    Ok(if errors.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// The blocks that are not what they would be if written now, a sentence each.
+/// What is wrong with the blocks, a sentence each; then what the README would be.
 pub fn stale(project: &Project) -> Result<Vec<String>> {
     let old = project.read(PATH)?;
-    let new = blocks::replace(&old, |name| make(project, name))?;
-    let sentence = |name: &str| format!("{PATH}: block `{name}` is stale; `cargo xtask readme` writes it anew");
-    let mut sentences: Vec<String> = differing(&old, &new)?.into_iter().map(sentence).collect();
-    if !sentences.is_empty() {
+    let (new, mut sentences) = fresh(project, &old)?;
+    let sentence = |name| format!("{PATH}: block `{name}` is stale; `cargo xtask readme` writes it anew");
+    sentences.extend(differing(&old, &new)?.into_iter().map(sentence));
+    if new != old {
         sentences.push(format!("\n{PATH} would be:\n\n{new}"));
     }
     Ok(sentences)
+}
+
+/// The text with its blocks as they would be if written now, and why some could not be.
+fn fresh(project: &Project, old: &str) -> Result<(String, Vec<String>)> {
+    let mut errors = Vec::new();
+    let new = blocks::replace(old, |name, body| {
+        make(project, name).unwrap_or_else(|error| {
+            errors.push(format!("{PATH}: block `{name}`: {error}"));
+            body.to_owned()
+        })
+    })?;
+    Ok((new, errors))
 }
 
 fn differing<'a>(old: &'a str, new: &str) -> Result<Vec<&'a str>> {
@@ -48,9 +67,11 @@ fn make(project: &Project, name: &str) -> Result<String> {
     match name.split_once(' ').unwrap_or((name, "")) {
         ("main-job", "") => main_job(project),
         ("help", "") => Ok(fenced("text", &output(project.carom().arg("--help"))?.0)),
+        ("outputs", "") => outputs(project),
         ("crates", "") => crates(project),
         ("example", package) => example(project, package),
-        _ => Err(format!("{PATH}: nothing makes a block `{name}`").into()),
+        ("file", path) => Ok(fenced(path.rsplit('.').next().unwrap_or_default(), &project.read(path)?)),
+        _ => Err("nothing makes a block of this name".into()),
     }
 }
 
@@ -63,6 +84,19 @@ fn main_job(project: &Project) -> Result<String> {
         "console",
         &format!("$ cargo run --release -- run {MAIN_JOB} --events events.csv\n{}", same_everywhere.join("\n")),
     ))
+}
+
+/// The files a run writes, with the columns it really writes.
+fn outputs(project: &Project) -> Result<String> {
+    let columns = |option: &str| -> Result<String> {
+        let (text, _) = output(project.carom().args(["run", SMALL_JOB, option, "-"]))?;
+        Ok(text.lines().next().unwrap_or_default().replace(',', ", "))
+    };
+    let mut table = "| option | one line for each | columns |\n|---|---|---|\n".to_owned();
+    table += &format!("| `--events FILE` | impact, begin of sliding, rest | `{}` |\n", columns("--events")?);
+    table += &format!("| `--frames FILE --fps N` | ball and frame | `{}` |\n", columns("--frames")?);
+    table += "| `--summary FILE` | run, as JSON | what the run prints, by name |\n";
+    Ok(table)
 }
 
 /// The members of the workspace and what each is for.
@@ -96,16 +130,6 @@ fn first_example(source: &str) -> Option<String> {
     let code: Vec<&str> =
         lines.take_while(|line| *line != "```").filter(|line| !(*line == "#" || line.starts_with("# "))).collect();
     Some(code.join("\n"))
-}
-
-/// Standard output and standard error of a command that must end well.
-fn output(command: &mut Command) -> Result<(String, String)> {
-    let output = command.stdin(Stdio::null()).output()?;
-    let (out, err) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
-    if !output.status.success() {
-        return Err(format!("{command:?} ended with {}\n{err}", output.status).into());
-    }
-    Ok((out.into_owned(), err.into_owned()))
 }
 
 fn fenced(language: &str, text: &str) -> String {

@@ -30,7 +30,8 @@ pub const STEPS: [Step; 8] = [
 ];
 
 fn format(project: &Project, log: &mut Log) -> Result<bool> {
-    log.run(&mut project.cargo(["fmt", "--all", "--check"]))
+    // rustfmt asks the terminal, not cargo, about colours.
+    log.run(&mut project.cargo(["fmt", "--all", "--check", "--", "--color", "never"]))
 }
 
 fn clippy(project: &Project, log: &mut Log) -> Result<bool> {
@@ -80,6 +81,7 @@ fn find_waiting(folder: &Path, target: &Path, found: &mut Vec<PathBuf>) -> io::R
 }
 
 fn scenes(project: &Project, log: &mut Log) -> Result<bool> {
+    project.build_carom()?;
     let mut passed = true;
     for scene in project.scenes()? {
         passed &= log.run(project.carom().args(["check", &scene]))?;
@@ -89,6 +91,7 @@ fn scenes(project: &Project, log: &mut Log) -> Result<bool> {
 }
 
 fn readme(project: &Project, log: &mut Log) -> Result<bool> {
+    project.build_carom()?;
     let mut wrong = commands::wrong(project, &project.read(readme::PATH)?)?;
     wrong.extend(readme::stale(project)?);
     for sentence in &wrong {

@@ -68,7 +68,7 @@ fn one(project: &Project, step: &'static Step) -> Result<Report> {
 }
 
 fn summarise(reports: &[Report], seconds: f64) -> Result<ExitCode> {
-    println!("\n{:<10} {:>6} {:>8}", "step", "", "seconds");
+    println!("\n{:<10} {:>6} {:>8}", "step", "result", "seconds");
     for report in reports {
         println!("{:<10} {:>6} {:>8.1}", report.step.name, mark(report.passed), report.seconds);
     }
