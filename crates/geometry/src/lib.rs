@@ -21,3 +21,4 @@ pub mod path;
 pub mod mesh;
 pub mod doctor;
 pub mod contact;
+pub mod sweep;
