@@ -82,19 +82,19 @@ fn find_waiting(folder: &Path, found: &mut Vec<PathBuf>) -> io::Result<()> {
 }
 
 fn scenes(project: &Project, log: &mut Log) -> Result<bool> {
-    project.build_carom()?;
+    let carom = project.carom()?;
     let mut passed = true;
     for scene in project.scenes()? {
-        passed &= log.run(project.carom().args(["check", &scene]))?;
-        passed &= log.run(project.carom().args(["run", &scene]))?;
+        passed &= log.run(&mut carom.command(["check", &scene]))?;
+        passed &= log.run(&mut carom.command(["run", &scene]))?;
     }
     Ok(passed)
 }
 
 fn readme(project: &Project, log: &mut Log) -> Result<bool> {
-    project.build_carom()?;
-    let mut wrong = commands::wrong(project, &project.read(readme::PATH)?)?;
-    wrong.extend(readme::stale(project)?);
+    let carom = project.carom()?;
+    let mut wrong = commands::wrong(project, &carom, &project.read(readme::PATH)?)?;
+    wrong.extend(readme::stale(project, &carom)?);
     for sentence in &wrong {
         log.line(sentence)?;
     }
