@@ -68,6 +68,12 @@ pub(crate) fn vector_area_bound(magnitude: f64, fans: usize) -> f64 {
 /// A plain cross product loses u / sine of its length: below 2^-6 that is more than 64 u.
 pub(crate) const NEEDLE_SINE_SQUARED: f64 = 1.0 / 4096.0;
 
+/// How far the f of [`segment_hits_triangle`](crate::segment::segment_hits_triangle) may be below the exact one: 256 u.
+///
+/// A design choice: a smaller one sends more segments to rationals. Two determinants of a well-shaped query are off by some 7 u of
+/// their permanents, which are a few times the determinants; this leaves room for segments down to a tenth of a radian from the plane.
+pub const SEGMENT_FRACTION_BOUND: f64 = 256.0 * UNIT_ROUNDOFF;
+
 /// How far |n|^2, computed, of a vector that was normalised in f64 may be from 1: 10 u.
 ///
 /// Squares and sums of the normalisation give gamma(3) / 2 of the length, its root and the division u each, which is 7 u of
@@ -106,22 +112,6 @@ pub fn power_of_two(k: i32) -> f64 {
 /// x 2^k; exact unless the result is subnormal or too large. `k` in -2044..=2046.
 pub fn scale(x: f64, k: i32) -> f64 {
     x * power_of_two(k / 2) * power_of_two(k - k / 2)
-}
-
-/// How much the computed distance n.(p - a) - r between a support plane and a ball may be off, n a unit vector and `extent`
-/// the sum of the largest |coordinate| of a - start, r, and the reach of the path, all relative to the start of the path.
-///
-/// a - start and each term of p carry 2 u of the extent; three products and their sums gamma(4) of sqrt(3) times it, both dot
-/// products; n itself is off by 4 u. That is sqrt(3) 4 + 2 + 4 < 16 of it.
-pub fn contact_bound(extent: f64) -> f64 {
-    16.0 * UNIT_ROUNDOFF * extent
-}
-
-/// The radius in m that stands for a point against a mesh whose largest |coordinate| is `farthest`: 2^14 units of
-/// roundoff, so that the centre stays on its own side whatever the rounding of its position (64 units), and so that what the ball
-/// touches to within that rounding has normals within sqrt(2 64 / 2^14), a twelfth of a radian.
-pub fn point_radius(farthest: f64) -> f64 {
-    16384.0 * UNIT_ROUNDOFF * farthest
 }
 
 #[cfg(test)]
