@@ -2,6 +2,7 @@
 
 mod fold;
 mod topology;
+mod weld;
 
 use nalgebra::{Point3, UnitVector3, Vector3};
 use thiserror::Error;
@@ -13,6 +14,8 @@ pub use fold::Fold;
 use fold::{folds, planar_folds, share_normals};
 pub(crate) use topology::Topology;
 use topology::VertexFaces;
+pub(crate) use weld::first_at_same_place;
+pub use weld::weld;
 
 /// The most faces a mesh can have: the number of a half-edge leaves three bits of a u32 for its fold.
 pub const MOST_FACES: usize = (1 << 29) / 3;
@@ -213,8 +216,7 @@ impl Mesh {
 
     /// Every edge once, in the order of their owners.
     pub fn edges(&self) -> impl Iterator<Item = Edge> {
-        let all = 0..3 * self.faces.len() as u32;
-        all.filter(|&h| self.topology.owner(h) == h).map(|h| self.edge(h / 3, (h % 3) as usize))
+        (0..self.topology.len()).filter(|&h| self.topology.owner(h) == h).map(|h| self.edge(h / 3, (h % 3) as usize))
     }
 
     /// The other faces at `side` of `face`: one inside a well-formed surface, none at its rim.

@@ -38,7 +38,7 @@ impl Topology {
     }
 
     /// How many half-edges there are.
-    pub(super) fn len(&self) -> u32 {
+    pub(crate) fn len(&self) -> u32 {
         self.links.len() as u32
     }
 
