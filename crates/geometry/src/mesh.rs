@@ -10,6 +10,7 @@ use thiserror::Error;
 use crate::bounds::Aabb;
 use crate::bvh::Bvh;
 use crate::normal::unit_normal;
+use crate::polygon::Polygon;
 pub use fold::Fold;
 use fold::{folds, planar_folds, share_normals};
 pub(crate) use topology::Topology;
@@ -149,6 +150,14 @@ impl Mesh {
         let mut topology = Topology::of(vertices.len(), &faces);
         planar_folds(&mut topology);
         Ok(Self::assemble(vertices, faces, Normals::Shared(normal), topology))
+    }
+
+    /// The triangles of `polygon`, as one planar surface: its diagonals are [`Fold::Flat`], its normal is that of every face.
+    pub fn from_polygon(polygon: &Polygon) -> Self {
+        let faces: Vec<[u32; 3]> = polygon.triangulate().into_iter().map(|t| t.map(|i| i as u32)).collect();
+        let mut topology = Topology::of(polygon.vertices().len(), &faces);
+        planar_folds(&mut topology);
+        Self::assemble(polygon.vertices().to_vec(), faces, Normals::Shared(polygon.normal()), topology)
     }
 
     fn assemble(vertices: Vec<Point3<f64>>, faces: Vec<[u32; 3]>, normals: Normals, topology: Topology) -> Self {
