@@ -24,9 +24,10 @@ pub fn orient2d_bound(magnitude: f64) -> f64 {
 /// with absolute values everywhere, and `column` the sum of the column's absolute values.
 ///
 /// (7 + 56 u) u is Shewchuk's constant (1997, figure 22). The two products of a minor may underflow by half a spacing each, multiplied
-/// by an entry of the column, and so may the three products with the column: `column` + 1.5 spacings; the double is given.
+/// by an entry of the column, and so may the three products with the column: `column` + 1.5 spacings. Far more is given, the
+/// smallest normal number for a spacing, because a product that is subnormal takes a processor some hundred cycles.
 pub fn orient3d_bound(permanent: f64, column: f64) -> f64 {
-    (7.0 + 56.0 * UNIT_ROUNDOFF) * UNIT_ROUNDOFF * permanent + 2.0 * SUBNORMAL_SPACING * (column + 2.0)
+    (7.0 + 56.0 * UNIT_ROUNDOFF) * UNIT_ROUNDOFF * permanent + f64::MIN_POSITIVE * (column + 2.0)
 }
 
 /// Bound on the error of n.(x - p) as computed from f64 n, x and p: `magnitude` = fl(|n1 d1| + |n2 d2| + |n3 d3|), d = fl(x - p).
@@ -58,9 +59,10 @@ pub(crate) const VECTOR_AREA_BOUND: f64 = 48.0 * UNIT_ROUNDOFF;
 /// the absolute values of the products in that component, as computed. The edges are scaled to lengths of about 1.
 ///
 /// A product passes two subtractions, a multiplication, the subtraction within the cross product and at most `fans` - 1 sums; two more for
-/// the roundings of `magnitude` and of the bound. Scaling an edge and multiplying may underflow: four spacings for each cross product.
+/// the roundings of `magnitude` and of the bound. Scaling an edge and multiplying may underflow, by four spacings for each
+/// cross product; the smallest normal number is given for them.
 pub(crate) fn vector_area_bound(magnitude: f64, fans: usize) -> f64 {
-    gamma(fans as u32 + 5) * magnitude + 4.0 * fans as f64 * SUBNORMAL_SPACING
+    gamma(fans as u32 + 5) * magnitude + f64::MIN_POSITIVE * fans as f64
 }
 
 /// The square of the sine of an angle below which a cross product is worth twice the precision: sine 2^-6.
