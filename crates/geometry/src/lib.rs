@@ -27,10 +27,10 @@
 //! ```
 
 // In dependency order: a module imports only from those above it.
-pub mod bounds;
-pub mod bvh;
 pub mod error;
 pub mod rounding;
+pub mod bounds;
+pub mod bvh;
 mod exact;
 pub mod predicates;
 pub mod projection;

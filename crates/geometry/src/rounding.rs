@@ -46,6 +46,28 @@ pub fn position_bound(extent: f64) -> f64 {
     16.0 * UNIT_ROUNDOFF * extent
 }
 
+/// u of f32, 2^-24.
+pub(crate) const UNIT_ROUNDOFF_F32: f64 = f32::EPSILON as f64 / 2.0;
+
+/// By how much a point of a segment may move, on each axis, when the tree of boxes takes its ends into its own coordinates and clips
+/// it; `reach` is the largest |coordinate| of the ends there.
+///
+/// An end has one rounding, u `reach`; the direction, at most 2 `reach` long, one; its product with s another; the sum one:
+/// 6 u `reach`, and 8 is given.
+pub(crate) fn segment_bound(reach: f64) -> f64 {
+    8.0 * UNIT_ROUNDOFF * reach
+}
+
+/// Room for all f32 rounding when a segment, with ends no larger than `reach` and a radius, is tested against boxes in [-1, 1], in the
+/// unit of the boxes.
+///
+/// With u of f32: the ends and the direction 3 u `reach`, the points that planes are measured from u (`reach` + `radius`), and 3 u
+/// relative in (plane - point) inverse, which is 6 u `reach` where it matters, at s <= 1. What is over 10 u `reach` + u `radius` covers this
+/// bound's own rounding and that of the boxes, one u of f64 each.
+pub(crate) fn segment_bound_f32(reach: f64, radius: f64) -> f64 {
+    UNIT_ROUNDOFF_F32 * (16.0 * reach + 2.0 * radius + 2.0)
+}
+
 /// By how much each component of a unit normal from [`unit_normal`](crate::normal::unit_normal) may differ from the exact one.
 ///
 /// A vector area is accepted when its error is below 48 u of its length; normalising it adds less than 8 u: three
