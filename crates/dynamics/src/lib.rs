@@ -12,3 +12,4 @@ pub mod effects;
 pub mod surface;
 pub mod scene;
 pub mod events;
+pub mod energy;
