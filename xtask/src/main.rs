@@ -1,3 +1,60 @@
-//! The project's own tasks.
+//! The project's own tasks: `cargo xtask verify` and `cargo xtask readme`.
+//!
+//! This crate has no dependencies on purpose: it builds in a second on a fresh clone, and no feature of another crate
+//! can make cargo rebuild it while it runs.
 
-fn main() {}
+mod project;
+mod log;
+mod blocks;
+mod commands;
+mod readme;
+mod steps;
+mod verify;
+
+use std::process::ExitCode;
+
+/// What a task gives: an error is a sentence for the person who ran it.
+type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
+
+/// The tasks, as the README may name them.
+const TASKS: [&str; 2] = ["verify", "readme"];
+
+const HELP: &str = "\
+Usage: cargo xtask TASK
+
+Tasks:
+  verify                      every check of the project; what the continuous integration runs
+  verify --only STEP[,STEP]   only these steps
+  verify --list               the steps, and what each checks
+  readme                      rewrites the generated blocks of README.md
+
+Exit code: 0 all is well; 1 a step failed; 2 usage.";
+
+fn main() -> ExitCode {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    let args: Vec<&str> = args.iter().map(String::as_str).collect();
+    let done = match args[..] {
+        ["verify"] => verify::run(&verify::all()),
+        ["verify", "--list"] => verify::list(),
+        ["verify", "--only", names] => match verify::named(names) {
+            Ok(steps) => verify::run(&steps),
+            Err(error) => return usage(&error.to_string()),
+        },
+        ["readme"] => readme::rewrite(),
+        ["help" | "--help" | "-h"] => {
+            println!("{HELP}");
+            Ok(ExitCode::SUCCESS)
+        }
+        [] => return usage("which task?"),
+        _ => return usage(&format!("not a task: {}", args.join(" "))),
+    };
+    done.unwrap_or_else(|error| {
+        eprintln!("error: {error}");
+        ExitCode::FAILURE
+    })
+}
+
+fn usage(error: &str) -> ExitCode {
+    eprintln!("error: {error}\n\n{HELP}");
+    ExitCode::from(2)
+}

@@ -1,6 +1,8 @@
 //! The modelling thresholds, each with its unit, what follows from it, and what breaks if it changes.
 
 use crate::error::{ValueError, require};
+use carom_geometry::rounding::UNIT_ROUNDOFF;
+use nalgebra::Vector3;
 
 /// When bouncing ends and when a ball is at rest: the thresholds e1, e2, e3 of the chapter's rest test.
 ///
@@ -35,3 +37,71 @@ impl RestThresholds {
         Ok(Self::Book { speed, distance, force })
     }
 }
+
+/// e1, e2, e3 for a contact that is pressed with a given acceleration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Thresholds {
+    /// e1 in m/s: a speed below it is none.
+    pub speed: f64,
+    /// e2 in m: a distance below it is contact.
+    pub distance: f64,
+    /// e3 in m/s^2: how strongly the force may still pull the ball off.
+    pub force: f64,
+}
+
+impl RestThresholds {
+    /// The three thresholds where the ball is pressed with the acceleration `pressed` >= 0 (m/s^2).
+    ///
+    /// From one length: e2 is the length, e1 = sqrt(2 a e2) the speed of a hop that high, e3 = 0. A larger length ends
+    /// bouncing sooner, and the ball is misplaced by up to that length; a smaller one costs more bounces, their number growing
+    /// with its logarithm.
+    pub fn at(&self, pressed: f64) -> Thresholds {
+        match *self {
+            Self::Length(length) => {
+                Thresholds { speed: (2.0 * pressed * length).sqrt(), distance: length, force: 0.0 }
+            }
+            Self::Book { speed, distance, force } => Thresholds { speed, distance, force },
+        }
+    }
+}
+
+/// The rest length of a scene that gives none, as a share of its extent: bouncing ends where a hop is this small beside the
+/// scene. Of no consequence for the motion a person sees; a thousand times larger would show in a comparison to 9 digits.
+const REST_SHARE: f64 = 1.0e-12;
+
+/// What f64 resolves at a distance of 1 from the origin, generously: a hop must not drown in the rounding of its position.
+const RESOLVED_SHARE: f64 = 16.0 * UNIT_ROUNDOFF;
+
+/// The rest length in m of a scene that gives none: `extent` is the size of the scene, `farthest` its largest coordinate.
+pub fn default_rest_length(extent: f64, farthest: f64) -> f64 {
+    (REST_SHARE * extent).max(RESOLVED_SHARE * farthest)
+}
+
+/// The least hop in m that a method of steps `h` (s) resolves under an acceleration `a` (m/s^2): one that lasts two steps.
+pub fn least_hop(a: f64, h: f64) -> f64 {
+    0.5 * a * h * h
+}
+
+/// Rates this small beside a speed are 0 by rounding.
+pub fn rate_rounding(speed: f64) -> f64 {
+    64.0 * UNIT_ROUNDOFF * speed
+}
+
+/// Distances this small are contact: the rounding of a position at distance `farthest` from the origin after moving `travelled`.
+pub fn touch_distance(farthest: f64, travelled: f64) -> f64 {
+    64.0 * UNIT_ROUNDOFF * (farthest + travelled)
+}
+
+/// Whether a velocity and an acceleration in contact are parallel to rounding, so that the path is straight.
+pub fn parallel(a: &Vector3<f64>, v: &Vector3<f64>) -> bool {
+    a.cross(v).norm() <= 16.0 * UNIT_ROUNDOFF * a.norm() * v.norm()
+}
+
+/// Error allowed per step of a sliding motion that has no closed form, relative to the motion.
+pub const SLIDING_TOLERANCE: f64 = 1.0e-10;
+
+/// Contacts answered without time passing before the ball's simulation is ended as unresolved.
+pub const MAX_STANDSTILL: u32 = 256;
+
+/// Events of one ball before its simulation is ended: a ball that bounces for ever stops here.
+pub const EVENT_BUDGET: u64 = 10_000_000;

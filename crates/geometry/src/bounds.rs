@@ -1,1 +1,128 @@
 //! Axis-aligned boxes.
+
+use nalgebra::{Point3, Vector3};
+
+/// A closed axis-aligned box of points, in the unit of its points, usually m; possibly empty.
+///
+/// Its corners are those of the points it was made of, without rounding, so that [`contains`](Self::contains) and
+/// [`intersects`](Self::intersects) are exact. Only [`inflate`](Self::inflate) rounds, and it rounds outwards.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Aabb {
+    min: Point3<f64>,
+    max: Point3<f64>,
+}
+
+impl Aabb {
+    /// The box without a point: the neutral element of [`union`](Self::union).
+    pub fn empty() -> Self {
+        let inf = f64::INFINITY;
+        Self { min: Point3::new(inf, inf, inf), max: Point3::new(-inf, -inf, -inf) }
+    }
+
+    /// The least box with all of `points`; empty without any. A NaN coordinate is ignored.
+    pub fn of_points<'a>(points: impl IntoIterator<Item = &'a Point3<f64>>) -> Self {
+        points.into_iter().fold(Self::empty(), |b, p| Self { min: b.min.inf(p), max: b.max.sup(p) })
+    }
+
+    /// The corner with the least coordinates; all +infinity for the empty box.
+    pub fn min(&self) -> &Point3<f64> {
+        &self.min
+    }
+
+    /// The corner with the largest coordinates; all -infinity for the empty box.
+    pub fn max(&self) -> &Point3<f64> {
+        &self.max
+    }
+
+    /// Whether there is no point in the box.
+    pub fn is_empty(&self) -> bool {
+        (0..3).any(|i| self.min[i] > self.max[i])
+    }
+
+    /// The least box with both `self` and `other`.
+    pub fn union(&self, other: &Self) -> Self {
+        Self { min: self.min.inf(&other.min), max: self.max.sup(&other.max) }
+    }
+
+    /// The box moved outwards by `r` >= 0 on every side, each coordinate rounded outwards: every point within `r` of
+    /// the box is in it. Empty stays empty, and `r` = 0 changes nothing.
+    pub fn inflate(&self, r: f64) -> Self {
+        if self.is_empty() || r == 0.0 {
+            return *self;
+        }
+        Self { min: self.min.map(|c| (c - r).next_down()), max: self.max.map(|c| (c + r).next_up()) }
+    }
+
+    /// Whether `x` is in the closed box.
+    pub fn contains(&self, x: &Point3<f64>) -> bool {
+        (0..3).all(|i| self.min[i] <= x[i] && x[i] <= self.max[i])
+    }
+
+    /// Whether the two closed boxes have a point in common; touching counts, and nothing meets an empty box.
+    pub fn intersects(&self, other: &Self) -> bool {
+        (0..3).all(|i| self.min[i].max(other.min[i]) <= self.max[i].min(other.max[i]))
+    }
+
+    /// The lengths of the sides; zero for an empty box, infinite where f64 has no such length.
+    pub fn extent(&self) -> Vector3<f64> {
+        if self.is_empty() { Vector3::zeros() } else { self.max - self.min }
+    }
+
+    /// The middle of the box; the origin for an empty one. Does not overflow.
+    pub fn centre(&self) -> Point3<f64> {
+        if self.is_empty() { Point3::origin() } else { self.min.map(|c| c / 2.0) + self.max.coords / 2.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn unit() -> Aabb {
+        Aabb::of_points(&[Point3::new(1.0, 0.0, 1.0), Point3::new(0.0, 1.0, 0.0)])
+    }
+
+    #[test]
+    fn corners_are_those_of_the_points() {
+        assert_eq!((*unit().min(), *unit().max()), (Point3::origin(), Point3::new(1.0, 1.0, 1.0)));
+        assert_eq!(unit().extent(), Vector3::new(1.0, 1.0, 1.0));
+        assert_eq!(unit().centre(), Point3::new(0.5, 0.5, 0.5));
+    }
+
+    #[test]
+    fn the_empty_box_is_neutral_and_meets_nothing() {
+        let empty = Aabb::of_points(&[]);
+        assert!(empty.is_empty() && empty.inflate(1.0).is_empty() && !unit().is_empty());
+        assert_eq!(empty.union(&unit()), unit());
+        assert!(!empty.intersects(&unit()) && !unit().intersects(&empty) && !empty.intersects(&empty));
+        assert!(!empty.contains(&Point3::origin()));
+        assert_eq!((empty.extent(), empty.centre()), (Vector3::zeros(), Point3::origin()));
+    }
+
+    #[test]
+    fn touching_counts_to_the_last_bit() {
+        let corner = Point3::new(1.0, 1.0, 1.0);
+        let beyond = Point3::new(1.0_f64.next_up(), 1.0, 1.0);
+        assert!(unit().contains(&corner) && unit().intersects(&Aabb::of_points(&[corner])));
+        assert!(!unit().contains(&beyond) && !unit().intersects(&Aabb::of_points(&[beyond])));
+    }
+
+    #[test]
+    fn inflation_rounds_outwards() {
+        let b = Aabb::of_points(&[Point3::new(1.0, 1e300, 5e-324)]);
+        // Each of these radii is lost when it is added to 1 or to 1e300.
+        for r in [5e-324, 1e-17, 0.1] {
+            let big = b.inflate(r);
+            for i in 0..3 {
+                assert!(big.min()[i] < b.min()[i] && b.max()[i] < big.max()[i], "axis {i}, r {r}");
+            }
+        }
+        assert_eq!(b.inflate(0.0), b);
+    }
+
+    #[test]
+    fn the_largest_boxes_have_a_centre() {
+        let b = Aabb::of_points(&[Point3::new(-f64::MAX, 0.0, f64::MAX), Point3::new(f64::MAX, 0.0, f64::MAX)]);
+        assert_eq!(b.centre(), Point3::new(0.0, 0.0, f64::MAX));
+    }
+}

@@ -1,1 +1,437 @@
-//! The clearance along a path, and its first entry.
+//! The clearance along a path, and the first place where it is used up: collision determination.
+//!
+//! A plane turns a path into a polynomial c(f), the distance that is left between ball and plane. **A collision is the first
+//! f at which c(f) <= 0 and c is falling.** For a straight path that is the chapter's f = d0 / (d0 - d1); a parabola has its
+//! quadratic, solved without cancellation; degrees 3 and 4 are halved in Bernstein form until one falling root is left.
+//! A ball that overlaps and separates is not an event, however deep: falling is part of the definition, so no tolerance
+//! decides and no position has to be nudged (stable event detection: Bannerman, Strobl, Lue, J. Chem. Phys. 139, 2014).
+
+/// The highest degree of a path, and so of a clearance.
+pub const MAX_DEGREE: usize = 4;
+
+/// A clearance c(f) = c0 + c1 f + c2 f^2 + c3 f^3 + c4 f^4 in the unit of its coefficients.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Clearance {
+    c: [f64; MAX_DEGREE + 1],
+}
+
+/// Where a clearance is first <= 0 and falling.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Entry {
+    /// Nowhere in the interval.
+    Never,
+    /// At `f`, with slope `rate` = dc/df <= 0. A slope of 0 is a touch: `c` turns there.
+    At {
+        /// Where.
+        f: f64,
+        /// The slope there.
+        rate: f64,
+    },
+}
+
+impl Entry {
+    /// Where, if anywhere.
+    pub fn f(&self) -> Option<f64> {
+        match *self {
+            Entry::Never => None,
+            Entry::At { f, .. } => Some(f),
+        }
+    }
+
+    fn within(self, to: f64) -> Self {
+        match self {
+            Entry::At { f, .. } if f <= to => self,
+            _ => Entry::Never,
+        }
+    }
+}
+
+impl Clearance {
+    /// The clearance with these coefficients, c0 first.
+    pub fn new(coefficients: [f64; MAX_DEGREE + 1]) -> Self {
+        Self { c: coefficients }
+    }
+
+    /// c(f).
+    pub fn at(&self, f: f64) -> f64 {
+        self.c.iter().rev().fold(0.0, |sum, c| sum * f + c)
+    }
+
+    /// dc/df at `f`.
+    pub fn rate(&self, f: f64) -> f64 {
+        let [_, c1, c2, c3, c4] = self.c;
+        ((4.0 * c4 * f + 3.0 * c3) * f + 2.0 * c2) * f + c1
+    }
+
+    /// d^2c/df^2 at `f`.
+    pub fn curvature(&self, f: f64) -> f64 {
+        let [_, _, c2, c3, c4] = self.c;
+        (12.0 * c4 * f + 6.0 * c3) * f + 2.0 * c2
+    }
+
+    /// The first f in [`from`, `to`] where the clearance is <= 0 and falling.
+    ///
+    /// Lines and parabolas are solved in closed form, to a few units of roundoff; higher degrees to the last bit of f that
+    /// the rounded coefficients determine, on the early side. A parabola that touches 0 from above without crossing is
+    /// reported as a touch (`rate` 0).
+    pub fn first_entry(&self, from: f64, to: f64) -> Entry {
+        if from > to {
+            return Entry::Never;
+        }
+        let [c0, c1, c2, c3, c4] = self.c;
+        if c3 != 0.0 || c4 != 0.0 {
+            return bernstein_entry(self, from, to);
+        }
+        let local = if from == 0.0 {
+            quadratic_entry(c0, c1, c2)
+        } else {
+            quadratic_entry((c2 * from + c1) * from + c0, 2.0 * c2 * from + c1, c2)
+        };
+        match local {
+            Entry::At { f, rate } => Entry::At { f: from + f, rate }.within(to),
+            Entry::Never => Entry::Never,
+        }
+    }
+}
+
+/// The first f >= 0 where c + b f + a f^2 is <= 0 and falling.
+fn quadratic_entry(c: f64, b: f64, a: f64) -> Entry {
+    if c <= 0.0 {
+        if b < 0.0 {
+            return Entry::At { f: 0.0, rate: b };
+        }
+        if a >= 0.0 {
+            return Entry::Never; // separating for ever
+        }
+        if c == 0.0 {
+            // Back on the plane it left: the return is algebraic, so that e = 1 loses nothing.
+            return Entry::At { f: b / -a, rate: -b };
+        }
+        let d = discriminant(c, b, a);
+        if d.value <= 0.0 {
+            return Entry::At { f: b / (-2.0 * a), rate: 0.0 }; // turns before it is free
+        }
+        let root = d.sqrt();
+        return Entry::At { f: (b + root) / (-2.0 * a), rate: -root };
+    }
+    if b >= 0.0 && a >= 0.0 {
+        return Entry::Never;
+    }
+    if a == 0.0 {
+        return Entry::At { f: c / -b, rate: b }; // the chapter's d0 / (d0 - d1)
+    }
+    let d = discriminant(c, b, a);
+    if d.value < 0.0 {
+        return Entry::Never;
+    }
+    let root = d.sqrt();
+    let f = if b < 0.0 { 2.0 * c / (root - b) } else { (b + root) / (-2.0 * a) };
+    Entry::At { f, rate: -root }
+}
+
+/// b^2 - 4 a c, as `value` times 4^`exponent`.
+struct Discriminant {
+    value: f64,
+    exponent: i32,
+}
+
+impl Discriminant {
+    fn sqrt(&self) -> f64 {
+        let root = self.value.sqrt();
+        if self.exponent == 0 { root } else { scale(root, self.exponent) }
+    }
+}
+
+/// b^2 - 4 a c without cancellation (Kahan) and without over- or underflow.
+fn discriminant(c: f64, b: f64, a: f64) -> Discriminant {
+    // Products of numbers in this range neither overflow nor lose bits to underflow.
+    const SAFE: std::ops::RangeInclusive<f64> = 1.0e-135..=1.0e150;
+    let safe = |x: f64| x == 0.0 || SAFE.contains(&x.abs());
+    if safe(a) && safe(b) && safe(c) {
+        return Discriminant { value: difference_of_products(b, b, 4.0 * a, c), exponent: 0 };
+    }
+    // Scale f so that a and c are of one size, then everything to about 1: all exact.
+    let (ea, eb, ec) = (exponent(a), exponent(b), exponent(c));
+    let half = (ea + ec).div_euclid(2);
+    let e = if b == 0.0 { half } else { eb.max(half) };
+    // b / 2^e, and a c / 4^e split over both factors.
+    let b = scale(b, -e);
+    let a = scale(a, -ea);
+    let c = scale(scale(c, -ec), (ea + ec - 2 * e).max(-1000));
+    Discriminant { value: difference_of_products(b, b, 4.0 * a, c), exponent: e }
+}
+
+/// The binary exponent of `x`: |x| in [2^e, 2^(e+1)), subnormals as if normalised.
+fn exponent(x: f64) -> i32 {
+    if x == 0.0 {
+        return 0;
+    }
+    let biased = |y: f64| ((y.to_bits() >> 52) & 0x7ff) as i32 - 1023;
+    if x.is_normal() { biased(x) } else { biased(x * 2f64.powi(100)) - 100 }
+}
+
+/// x 2^e in steps that are each representable.
+fn scale(mut x: f64, mut e: i32) -> f64 {
+    while e != 0 {
+        let step = e.clamp(-1000, 1000);
+        x *= 2f64.powi(step);
+        e -= step;
+    }
+    x
+}
+
+/// a b - c d with an error of at most 1.5 units in the last place (Jeannerod, Louvet, Muller 2013).
+fn difference_of_products(a: f64, b: f64, c: f64, d: f64) -> f64 {
+    let (ab, cd) = (a * b, c * d);
+    let difference = ab - cd;
+    if difference.abs() >= 0.5 * ab.abs() {
+        return difference; // nothing cancelled
+    }
+    // Rare, so the price of a software fma does not matter; it rounds the same on every machine.
+    let error = (-c).mul_add(d, cd);
+    a.mul_add(b, -cd) + error
+}
+
+const BINOMIAL: [[f64; 5]; 5] = [
+    [1.0, 0.0, 0.0, 0.0, 0.0],
+    [1.0, 1.0, 0.0, 0.0, 0.0],
+    [1.0, 2.0, 1.0, 0.0, 0.0],
+    [1.0, 3.0, 3.0, 1.0, 0.0],
+    [1.0, 4.0, 6.0, 4.0, 1.0],
+];
+
+/// A stretch of the clearance as Bernstein coefficients over [lo, lo + width].
+#[derive(Clone, Copy)]
+struct Piece {
+    b: [f64; MAX_DEGREE + 1],
+    lo: f64,
+    width: f64,
+}
+
+/// What a piece says about the first entry.
+enum Verdict {
+    /// No entry: the clearance stays positive, or never falls.
+    None,
+    /// The piece begins <= 0 and falling.
+    AtStart,
+    /// Falls all the way, from above 0 to below it: one root.
+    OneRoot,
+    /// Halve it.
+    Unknown,
+}
+
+impl Piece {
+    fn of(clearance: &Clearance, lo: f64, hi: f64) -> Self {
+        let width = hi - lo;
+        // Taylor coefficients at `lo`, in units of the width.
+        let mut taylor = clearance.c;
+        for k in 0..MAX_DEGREE {
+            for i in (k..MAX_DEGREE).rev() {
+                taylor[i] += lo * taylor[i + 1];
+            }
+        }
+        let mut power = 1.0;
+        for t in &mut taylor {
+            *t *= power;
+            power *= width;
+        }
+        let mut b = [0.0; MAX_DEGREE + 1];
+        for (i, bi) in b.iter_mut().enumerate() {
+            for k in (0..=i).rev() {
+                *bi += BINOMIAL[i][k] / BINOMIAL[MAX_DEGREE][k] * taylor[k];
+            }
+        }
+        Self { b, lo, width }
+    }
+
+    fn verdict(&self) -> Verdict {
+        let b = &self.b;
+        if b.iter().all(|&x| x > 0.0) || b.windows(2).all(|w| w[1] >= w[0]) {
+            return Verdict::None;
+        }
+        if b[0] <= 0.0 && b[1] < b[0] {
+            return Verdict::AtStart;
+        }
+        if b[0] > 0.0 && b[MAX_DEGREE] <= 0.0 && b.windows(2).all(|w| w[1] <= w[0]) {
+            return Verdict::OneRoot;
+        }
+        Verdict::Unknown
+    }
+
+    /// The two halves; halving is exact up to the rounding of averages.
+    fn halves(&self) -> (Self, Self) {
+        let mut row = self.b;
+        let (mut left, mut right) = (self.b, self.b);
+        for k in 1..=MAX_DEGREE {
+            for i in 0..=MAX_DEGREE - k {
+                row[i] = 0.5 * (row[i] + row[i + 1]);
+            }
+            left[k] = row[0];
+            right[MAX_DEGREE - k] = row[MAX_DEGREE - k];
+        }
+        let width = 0.5 * self.width;
+        (Self { b: left, lo: self.lo, width }, Self { b: right, lo: self.lo + width, width })
+    }
+
+    /// c at `s` in [0, 1] of the piece (de Casteljau).
+    fn at(&self, s: f64) -> f64 {
+        let mut row = self.b;
+        for k in 1..=MAX_DEGREE {
+            for i in 0..=MAX_DEGREE - k {
+                row[i] += s * (row[i + 1] - row[i]);
+            }
+        }
+        row[0]
+    }
+
+    /// The root of a piece that falls from above 0 to below: regula falsi (Illinois) inside a bracket that halves at the
+    /// latest every third round; the early side of the last bracket.
+    fn only_root(&self) -> f64 {
+        let (mut lo, mut hi) = (0.0, 1.0);
+        let (mut at_lo, mut at_hi) = (self.b[0], self.b[MAX_DEGREE]);
+        let mut rounds = 0;
+        while at_hi < 0.0 && rounds < 200 {
+            let middle = 0.5 * (lo + hi);
+            if middle <= lo || middle >= hi {
+                break;
+            }
+            let secant = lo + (hi - lo) * (at_lo / (at_lo - at_hi));
+            let s = if rounds % 3 == 2 || !(secant > lo && secant < hi) { middle } else { secant };
+            let value = self.at(s);
+            if value > 0.0 {
+                (lo, at_lo) = (s, value);
+                at_hi *= 0.5;
+            } else {
+                (hi, at_hi) = (s, value);
+                at_lo *= 0.5;
+            }
+            if value == 0.0 {
+                lo = s;
+                break;
+            }
+            rounds += 1;
+        }
+        let s = if at_hi == 0.0 { hi } else { lo };
+        self.lo + self.width * s
+    }
+}
+
+/// The first entry of a cubic or quartic: pieces front to back, each ruled out, solved, or halved.
+fn bernstein_entry(clearance: &Clearance, from: f64, to: f64) -> Entry {
+    // Each halving pushes one piece, and after 60 a piece is narrower than the spacing of f.
+    let mut stack = [Piece::of(clearance, from, to); 64];
+    let mut depth = 1;
+    while depth > 0 {
+        depth -= 1;
+        let piece = stack[depth];
+        let f = match piece.verdict() {
+            Verdict::None => continue,
+            Verdict::AtStart => piece.lo,
+            Verdict::OneRoot => piece.only_root(),
+            Verdict::Unknown => {
+                if piece.lo + 0.5 * piece.width > piece.lo && depth + 2 <= stack.len() {
+                    let (left, right) = piece.halves();
+                    stack[depth] = right;
+                    stack[depth + 1] = left;
+                    depth += 2;
+                    continue;
+                }
+                piece.lo // undecided at the resolution of f: on the safe side, a hit
+            }
+        };
+        return Entry::At { f, rate: clearance.rate(f).min(0.0) };
+    }
+    Entry::Never
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rounding::UNIT_ROUNDOFF;
+
+    fn entry(c: [f64; 5], from: f64, to: f64) -> Option<(f64, f64)> {
+        match Clearance::new(c).first_entry(from, to) {
+            Entry::Never => None,
+            Entry::At { f, rate } => Some((f, rate)),
+        }
+    }
+
+    #[test]
+    fn r03_a_sign_change_in_one_dimension_is_a_collision() {
+        // y - b goes from 2 to -1: the barrier is crossed. From 2 to 1 it is not.
+        assert!(entry([2.0, -3.0, 0.0, 0.0, 0.0], 0.0, 1.0).is_some());
+        assert!(entry([2.0, -1.0, 0.0, 0.0, 0.0], 0.0, 1.0).is_none());
+    }
+
+    #[test]
+    fn r08_f_is_d0_over_d0_minus_d1() {
+        let (d0, d1) = (0.75, -0.5);
+        assert_eq!(entry([d0, d1 - d0, 0.0, 0.0, 0.0], 0.0, 1.0), Some((d0 / (d0 - d1), d1 - d0)));
+    }
+
+    #[test]
+    fn r08_zero_over_zero_and_starts_inside_have_an_answer() {
+        assert_eq!(entry([0.0; 5], 0.0, 1.0), None, "in contact for ever, never closing");
+        assert_eq!(entry([-1.0, -2.0, 0.0, 0.0, 0.0], 0.0, 1.0), Some((0.0, -2.0)), "inside and closing: now");
+        assert_eq!(entry([-1.0, 2.0, 0.0, 0.0, 0.0], 0.0, 1.0), None, "inside and separating: never");
+    }
+
+    #[test]
+    fn r09_contact_is_clearance_used_up_and_closing() {
+        // On the plane, leaving under gravity: the next contact is the return, algebraically.
+        assert_eq!(entry([0.0, 3.0, -4.0, 0.0, 0.0], 0.0, 1.0), Some((0.75, -3.0)));
+        // Overlapping, separating, but turning before it is free: there.
+        assert_eq!(entry([-1.0, 1.0, -1.0, 0.0, 0.0], 0.0, 1.0), Some((0.5, 0.0)));
+    }
+
+    #[test]
+    fn quadratic_roots_do_not_cancel() {
+        // v = 1e4, h = 1e-9: the textbook formula returns 0.
+        let (h, v, g) = (1e-9, -1e4, -9.81);
+        let (f, _) = entry([h, v, 0.5 * g, 0.0, 0.0], 0.0, 1.0).unwrap();
+        let exact = 1e-13; // h/|v| (1 - g h / (2 v^2)): the correction is 5e-17 relative
+        assert!((f - exact).abs() <= 4.0 * UNIT_ROUNDOFF * exact, "{f:e}");
+    }
+
+    #[test]
+    fn a_double_root_is_decided_by_the_exact_discriminant() {
+        let touch = entry([0.25, -1.0, 1.0, 0.0, 0.0], 0.0, 1.0);
+        assert_eq!(touch, Some((0.5, 0.0)));
+        assert_eq!(entry([0.25 + UNIT_ROUNDOFF, -1.0, 1.0, 0.0, 0.0], 0.0, 1.0), None);
+        assert!(entry([0.25 - UNIT_ROUNDOFF / 2.0, -1.0, 1.0, 0.0, 0.0], 0.0, 1.0).unwrap().1 < 0.0);
+    }
+
+    #[test]
+    fn scaling_by_powers_of_two_changes_nothing() {
+        let (f0, rate0) = entry([1.5, 0.3, -4.7, 0.0, 0.0], 0.0, 1.0).unwrap();
+        for k in [-1000, -600, -300, 300, 600, 1000] {
+            let s = |x: f64| scale(x, k);
+            let (f, rate) = entry([s(1.5), s(0.3), s(-4.7), 0.0, 0.0], 0.0, 1.0).unwrap();
+            assert_eq!((f, rate), (f0, s(rate0)), "2^{k}");
+        }
+    }
+
+    #[test]
+    fn a_quartic_finds_its_first_falling_root() {
+        // (f - 0.2)(f - 0.4)(f - 0.6)(f - 0.8): falls through 0.2 and 0.6.
+        let c = [0.0384, -0.4, 1.4, -2.0, 1.0];
+        let (f, rate) = entry(c, 0.0, 1.0).unwrap();
+        assert!((f - 0.2).abs() < 64.0 * UNIT_ROUNDOFF && rate < 0.0, "{f}");
+        let (f, _) = entry(c, 0.3, 1.0).unwrap();
+        assert!((f - 0.6).abs() < 64.0 * UNIT_ROUNDOFF, "started overlapping, rising: {f}");
+        assert_eq!(entry(c, 0.65, 0.79).map(|e| e.0), Some(0.65), "overlapping and falling: now");
+        assert_eq!(entry(c, 0.72, 1.0), None, "only rises from here");
+    }
+
+    #[test]
+    fn a_higher_degree_with_no_higher_terms_agrees_with_the_closed_form() {
+        for (c, b, a) in [(1.0, 0.5, -3.0), (1.0, -2.5, 0.3), (-0.1, 1.0, -4.0), (0.0, 1.0, -2.0)] {
+            let exact = quadratic_entry(c, b, a).within(1.0).f();
+            let halved = bernstein_entry(&Clearance::new([c, b, a, 0.0, 0.0]), 0.0, 1.0).f();
+            match (exact, halved) {
+                (Some(x), Some(y)) => assert!((x - y).abs() <= 16.0 * UNIT_ROUNDOFF, "{x} {y}"),
+                (x, y) => assert_eq!(x, y),
+            }
+        }
+    }
+}

@@ -1,1 +1,168 @@
-//! The path of a moving point as a polynomial over f in [0, 1].
+//! The path of a moving point: a curve over f in [0, 1].
+//!
+//! Straight under Euler's method, a parabola under constant acceleration, a cubic or quartic under a Runge-Kutta method with
+//! its dense output. The curve is kept as its start and its Taylor terms there, which for a line and a parabola are exact; the
+//! Bézier control points, which bound it, are made where they are needed.
+
+use crate::bounds::Aabb;
+use crate::clearance::{Clearance, MAX_DEGREE};
+use nalgebra::{Point3, Vector3};
+
+/// A path p(f) = start + t1 f + t2 f^2 + t3 f^3 + t4 f^4, f in [0, 1].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Path {
+    start: Point3<f64>,
+    terms: [Vector3<f64>; MAX_DEGREE],
+    degree: usize,
+}
+
+impl Path {
+    /// The straight path from `start` to `start + displacement`.
+    pub fn line(start: Point3<f64>, displacement: Vector3<f64>) -> Self {
+        Self::from_terms(start, &[displacement])
+    }
+
+    /// The parabola start + linear f + quadratic f^2: for velocity v, acceleration a and duration h, `linear` is v h and
+    /// `quadratic` a h^2 / 2.
+    pub fn parabola(start: Point3<f64>, linear: Vector3<f64>, quadratic: Vector3<f64>) -> Self {
+        Self::from_terms(start, &[linear, quadratic])
+    }
+
+    /// The path with up to four Taylor terms at its start; terms beyond the fourth are not taken.
+    pub fn from_terms(start: Point3<f64>, terms: &[Vector3<f64>]) -> Self {
+        let mut all = [Vector3::zeros(); MAX_DEGREE];
+        let mut degree = 0;
+        for (k, term) in terms.iter().take(MAX_DEGREE).enumerate() {
+            all[k] = *term;
+            degree = k + 1;
+        }
+        Self { start, terms: all, degree }
+    }
+
+    /// p(0).
+    pub fn start(&self) -> Point3<f64> {
+        self.start
+    }
+
+    /// The Taylor terms at the start, as many as the degree.
+    pub fn terms(&self) -> &[Vector3<f64>] {
+        &self.terms[..self.degree]
+    }
+
+    /// p(f) - p(0). Small displacements are accurate wherever the path is: they know nothing of the start.
+    pub fn displacement(&self, f: f64) -> Vector3<f64> {
+        self.terms().iter().rev().fold(Vector3::zeros(), |sum, term| (sum + term) * f)
+    }
+
+    /// p(f).
+    pub fn at(&self, f: f64) -> Point3<f64> {
+        self.start + self.displacement(f)
+    }
+
+    /// dp/df at `f`.
+    pub fn derivative(&self, f: f64) -> Vector3<f64> {
+        let mut sum = Vector3::zeros();
+        for (k, term) in self.terms().iter().enumerate().rev() {
+            sum = sum * f + term * (k + 1) as f64;
+        }
+        sum
+    }
+
+    /// The distance along `normal` that is left at f when it is `gap` at f = 0: one dot product for each term.
+    pub fn clearance(&self, gap: f64, normal: &Vector3<f64>) -> Clearance {
+        let mut c = [gap, 0.0, 0.0, 0.0, 0.0];
+        for (k, term) in self.terms().iter().enumerate() {
+            c[k + 1] = normal.dot(term);
+        }
+        Clearance::new(c)
+    }
+
+    /// No point of the path up to `f` is farther from the start than this, along any axis: the scale of its rounding errors.
+    pub fn reach(&self, f: f64) -> f64 {
+        self.terms().iter().rev().fold(0.0, |sum, term| (sum + term.amax()) * f)
+    }
+
+    /// The stretch of the path over [from, to] as seen from the start of the path: its end points, and `sagitta`, which no
+    /// point of the stretch is farther from the chord than.
+    pub fn chord(&self, from: f64, to: f64) -> Chord {
+        let (a, b) = (self.displacement(from), self.displacement(to));
+        let half = 0.5 * (to - from);
+        // |p - chord| <= max |p''| (to - from)^2 / 8, and |p''| <= sum k (k-1) |t_k| f^(k-2).
+        let (mut bend, mut power) = (0.0, 1.0);
+        for (k, term) in self.terms().iter().enumerate().skip(1) {
+            bend += ((k + 1) * k) as f64 * term.norm() * power;
+            power *= to;
+        }
+        Chord { from: a, to: b, sagitta: 0.5 * half * half * bend }
+    }
+
+    /// A box around the stretch of the path over [from, to].
+    pub fn bounds(&self, from: f64, to: f64) -> Aabb {
+        let chord = self.chord(from, to);
+        Aabb::of_points([self.start + chord.from, self.start + chord.to]).inflate(chord.sagitta)
+    }
+}
+
+/// A straight stand-in for a stretch of a path, relative to the start of the path.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Chord {
+    /// Where the stretch begins.
+    pub from: Vector3<f64>,
+    /// Where it ends.
+    pub to: Vector3<f64>,
+    /// How far the path may be from the chord.
+    pub sagitta: f64,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn quartic() -> Path {
+        let v = |x, y, z| Vector3::new(x, y, z);
+        Path::from_terms(
+            Point3::new(1.0, -2.0, 0.5),
+            &[v(1.0, 2.0, 3.0), v(-4.0, 0.5, 1.0), v(2.0, 2.0, -8.0), v(0.25, -1.0, 4.0)],
+        )
+    }
+
+    #[test]
+    fn r07_a_straight_path_joins_the_positions_before_and_after_the_step() {
+        let path = Path::line(Point3::new(1.0, 2.0, 3.0), Vector3::new(0.5, -1.0, 4.0));
+        assert_eq!(path.at(0.0), Point3::new(1.0, 2.0, 3.0));
+        assert_eq!(path.at(0.5), Point3::new(1.25, 1.5, 5.0));
+        assert_eq!(path.at(1.0), Point3::new(1.5, 1.0, 7.0));
+    }
+
+    #[test]
+    fn the_derivative_is_that_of_the_path() {
+        let (path, f, step) = (quartic(), 0.375, 2f64.powi(-20));
+        let slope = (path.displacement(f + step) - path.displacement(f - step)) / (2.0 * step);
+        assert!((slope - path.derivative(f)).amax() < 1e-9);
+    }
+
+    #[test]
+    fn the_clearance_is_the_distance_from_the_plane_along_the_path() {
+        let (path, n) = (quartic(), Vector3::new(0.6, 0.0, 0.8));
+        let clearance = path.clearance(2.0, &n);
+        for i in 0..=8 {
+            let f = f64::from(i) / 8.0;
+            assert!((clearance.at(f) - (2.0 + n.dot(&path.displacement(f)))).abs() < 1e-14);
+            assert!((clearance.rate(f) - n.dot(&path.derivative(f))).abs() < 1e-13);
+        }
+    }
+
+    #[test]
+    fn the_sagitta_bounds_the_path() {
+        let path = quartic();
+        for (from, to) in [(0.0, 1.0), (0.25, 0.5), (0.9, 1.0)] {
+            let chord = path.chord(from, to);
+            for i in 0..=64 {
+                let s = f64::from(i) / 64.0;
+                let on_path = path.displacement(from + s * (to - from));
+                let on_chord = chord.from + (chord.to - chord.from) * s;
+                assert!((on_path - on_chord).norm() <= chord.sagitta * (1.0 + 1e-12));
+            }
+        }
+    }
+}

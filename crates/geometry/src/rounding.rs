@@ -1,1 +1,130 @@
-//! Rounding bounds as formulas in the unit roundoff.
+//! Rounding bounds as formulas in the unit roundoff: every allowance for rounding in this crate has its home here.
+
+/// u = 2^-53: fl(x op y) = (x op y)(1 + d) with |d| <= u, for + - * / and sqrt without underflow.
+pub const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
+
+/// 2^-1074, the spacing of the subnormal numbers; a product that underflows is off by half of it at most, sums by nothing.
+const SUBNORMAL_SPACING: f64 = f64::from_bits(1);
+
+/// gamma(n) = n u / (1 - n u): n roundings in a row change a result by this factor at most (Higham 2002, lemma 3.1).
+pub const fn gamma(n: u32) -> f64 {
+    n as f64 * UNIT_ROUNDOFF / (1.0 - n as f64 * UNIT_ROUNDOFF)
+}
+
+/// Bound on the error of det = fl(left - right), where left and right are products of two coordinate differences each and
+/// `magnitude` = fl(|left| + |right|).
+///
+/// (3 + 16 u) u covers the three roundings of each product and those of this bound (Shewchuk 1997, figure 21); each of the two
+/// products may underflow, which adds a spacing; two are given.
+pub fn orient2d_bound(magnitude: f64) -> f64 {
+    (3.0 + 16.0 * UNIT_ROUNDOFF) * UNIT_ROUNDOFF * magnitude + 2.0 * SUBNORMAL_SPACING
+}
+
+/// Bound on the error of the 3 x 3 determinant of coordinate differences, expanded along one column: `permanent` is the same expansion
+/// with absolute values everywhere, and `column` the sum of the column's absolute values.
+///
+/// (7 + 56 u) u is Shewchuk's constant (1997, figure 22). The two products of a minor may underflow by half a spacing each, multiplied
+/// by an entry of the column, and so may the three products with the column: `column` + 1.5 spacings; the double is given.
+pub fn orient3d_bound(permanent: f64, column: f64) -> f64 {
+    (7.0 + 56.0 * UNIT_ROUNDOFF) * UNIT_ROUNDOFF * permanent + 2.0 * SUBNORMAL_SPACING * (column + 2.0)
+}
+
+/// Bound on the error of n.(x - p) as computed from f64 n, x and p: `magnitude` = fl(|n1 d1| + |n2 d2| + |n3 d3|), d = fl(x - p).
+///
+/// A term passes a subtraction, a product and two sums: gamma(4) (|n1 d1| + ...) in exact arithmetic; 4 u + 64 u^2 also covers the
+/// roundings of `magnitude` and of the bound itself. Each of the three products may underflow by half a spacing: two are given.
+pub fn signed_distance_bound(magnitude: f64) -> f64 {
+    (4.0 + 64.0 * UNIT_ROUNDOFF) * UNIT_ROUNDOFF * magnitude + 2.0 * SUBNORMAL_SPACING
+}
+
+/// How far a computed position may be from the exact one when `extent` is the largest |coordinate| or |displacement| that
+/// went into it: 16 u `extent`.
+///
+/// A point of a path is a sum of at most four terms with at most four roundings each, each no larger than the extent.
+pub fn position_bound(extent: f64) -> f64 {
+    16.0 * UNIT_ROUNDOFF * extent
+}
+
+/// By how much each component of a unit normal from [`unit_normal`](crate::normal::unit_normal) may differ from the exact one.
+///
+/// A vector area is accepted when its error is below 48 u of its length; normalising it adds less than 8 u: three
+/// squares, two sums (half of gamma(3)), a root, a division and the scaling.
+pub const NORMAL_BOUND: f64 = 56.0 * UNIT_ROUNDOFF;
+
+/// The error a vector area may have, as a part of its length, so that its direction keeps [`NORMAL_BOUND`].
+pub(crate) const VECTOR_AREA_BOUND: f64 = 48.0 * UNIT_ROUNDOFF;
+
+/// Bound on the error of each component of a vector area summed from `fans` cross products of rounded edges: `magnitude` is the sum of
+/// the absolute values of the products in that component, as computed. The edges are scaled to lengths of about 1.
+///
+/// A product passes two subtractions, a multiplication, the subtraction within the cross product and at most `fans` - 1 sums; two more for
+/// the roundings of `magnitude` and of the bound. Scaling an edge and multiplying may underflow: four spacings for each cross product.
+pub(crate) fn vector_area_bound(magnitude: f64, fans: usize) -> f64 {
+    gamma(fans as u32 + 5) * magnitude + 4.0 * fans as f64 * SUBNORMAL_SPACING
+}
+
+/// The square of the sine of an angle below which a cross product is worth twice the precision: sine 2^-6.
+///
+/// A plain cross product loses u / sine of its length: below 2^-6 that is more than 64 u.
+pub(crate) const NEEDLE_SINE_SQUARED: f64 = 1.0 / 4096.0;
+
+/// How far |n|^2, computed, of a vector that was normalised in f64 may be from 1: 10 u.
+///
+/// Squares and sums of the normalisation give gamma(3) / 2 of the length, its root and the division u each, which is 7 u of
+/// |n|^2; computing |n|^2 again gives gamma(3). A vector within it is taken to be a unit vector and kept bit for bit.
+pub const UNIT_LENGTH_BOUND: f64 = 10.0 * UNIT_ROUNDOFF;
+
+/// How far the vertices of a planar polygon may be off the plane fitted to them when each of their coordinates
+/// is off by 8 u `extent`, `extent` being the largest |coordinate|.
+///
+/// 8 u is what a rotation and a translation of f64 coordinates leave (gamma(4) of up to two terms of the size of the extent). A vertex
+/// is then at most e = sqrt(3) 8 u `extent` off its place. That moves a vertex off the plane by e, the plane's own point by e,
+/// and turns the normal by at most e `perimeter` / `area` (each edge of the vector area, half a sum of cross
+/// products, moves by 2 e), which lifts a vertex at `diameter` by that times `diameter`.
+pub fn planarity_bound(extent: f64, diameter: f64, perimeter: f64, area: f64) -> f64 {
+    let vertex = 1.75 * 8.0 * UNIT_ROUNDOFF * extent;
+    vertex * (2.0 + diameter * (perimeter / area))
+}
+
+/// The exponent e of a finite x != 0, 2^e <= |x| < 2^(e+1); -1075 for 0.
+pub fn exponent(x: f64) -> i32 {
+    const MANTISSA: u32 = 52;
+    let biased = |x: f64| (x.abs().to_bits() >> MANTISSA) as i32;
+    match biased(x) {
+        0 if x == 0.0 => -1075,
+        // Subnormal: 2^54 x is not.
+        0 => biased(x * power_of_two(54)) - 1023 - 54,
+        e => e - 1023,
+    }
+}
+
+/// 2^k, exactly; `k` is brought into -1022..=1023 first.
+pub fn power_of_two(k: i32) -> f64 {
+    f64::from_bits(((k.clamp(-1022, 1023) + 1023) as u64) << 52)
+}
+
+/// x 2^k; exact unless the result is subnormal or too large. `k` in -2044..=2046.
+pub fn scale(x: f64, k: i32) -> f64 {
+    x * power_of_two(k / 2) * power_of_two(k - k / 2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exponent_brackets_every_kind_of_number() {
+        for x in [1.0, 1.5, -2.0, 0.75, f64::MIN_POSITIVE, f64::MAX, f64::from_bits(1), f64::from_bits(12345)] {
+            let e = exponent(x);
+            assert!(scale(1.0, e) <= x.abs() && x.abs() / 2.0 < scale(1.0, e), "{x:e} has exponent {e}");
+        }
+        assert_eq!(exponent(f64::from_bits(1)), -1074);
+        assert_eq!(exponent(0.0), -1075);
+    }
+
+    #[test]
+    fn gamma_is_n_u_and_a_little() {
+        assert!(gamma(4) > 4.0 * UNIT_ROUNDOFF);
+        assert!(gamma(4) < 4.0 * UNIT_ROUNDOFF * (1.0 + 8.0 * UNIT_ROUNDOFF));
+    }
+}

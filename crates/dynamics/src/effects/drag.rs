@@ -1,5 +1,8 @@
 //! Air resistance in a wind w: linear, F = -k (v - w), or quadratic, F = -1/2 rho C A |v - w| (v - w).
 
+use crate::body::{Ball, State};
+use crate::counters::Counters;
+use crate::effects::Flow;
 use crate::error::{ValueError, require, require_finite};
 use nalgebra::Vector3;
 
@@ -45,16 +48,65 @@ impl Drag {
     pub fn wind(&self) -> Vector3<f64> {
         self.wind
     }
+}
 
-    /// The acceleration in m/s^2 at `velocity` (m/s) of a ball of `radius` (m) and `mass` (kg).
-    pub fn acceleration(&self, velocity: &Vector3<f64>, radius: f64, mass: f64) -> Vector3<f64> {
-        let relative = velocity - self.wind;
-        let per_speed = match self.law {
-            Law::Linear(k) => k / mass,
+impl Flow for Drag {
+    fn name(&self) -> &'static str {
+        "drag"
+    }
+
+    fn acceleration(&self, state: &State, ball: &Ball) -> Vector3<f64> {
+        let relative = state.velocity - self.wind;
+        let force_per_speed = match self.law {
+            Law::Linear(k) => k,
             Law::Quadratic(c_rho) => {
-                0.5 * c_rho * std::f64::consts::PI * radius * radius * relative.norm() / mass
+                let area = std::f64::consts::PI * ball.radius() * ball.radius();
+                0.5 * c_rho * area * relative.norm()
             }
         };
-        -relative * per_speed
+        // The plan refuses drag on a ball without a mass.
+        relative * (-force_per_speed / ball.mass().unwrap_or(f64::INFINITY))
+    }
+
+    fn count(&self, counters: &mut Counters) {
+        counters.drag += 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Point3;
+
+    fn ball() -> Ball {
+        Ball::new(Point3::origin(), Vector3::zeros(), 0.5, Some(2.0)).unwrap()
+    }
+
+    fn moving(velocity: Vector3<f64>) -> State {
+        State { position: Point3::origin(), velocity }
+    }
+
+    #[test]
+    fn linear_drag_is_k_over_m_times_the_relative_velocity() {
+        let drag = Drag::linear(3.0).unwrap().in_wind(Vector3::new(1.0, 0.0, 0.0)).unwrap();
+        let a = drag.acceleration(&moving(Vector3::new(5.0, 2.0, 0.0)), &ball());
+        assert_eq!(a, Vector3::new(-6.0, -3.0, 0.0));
+    }
+
+    #[test]
+    fn quadratic_drag_grows_with_the_square_of_the_relative_speed() {
+        let drag = Drag::quadratic(0.5, 1.2).unwrap();
+        let slow = drag.acceleration(&moving(Vector3::new(0.0, 0.0, 2.0)), &ball());
+        let fast = drag.acceleration(&moving(Vector3::new(0.0, 0.0, 4.0)), &ball());
+        assert_eq!(fast, 4.0 * slow);
+        let area = std::f64::consts::PI * 0.25;
+        assert!((slow.z + 0.5 * 1.2 * 0.5 * area * 4.0 / 2.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn values_that_mean_nothing_are_refused() {
+        assert!(Drag::linear(-1.0).is_err());
+        assert!(Drag::quadratic(f64::NAN, 1.0).is_err());
+        assert!(Drag::linear(1.0).unwrap().in_wind(Vector3::new(f64::INFINITY, 0.0, 0.0)).is_err());
     }
 }

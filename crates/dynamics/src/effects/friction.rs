@@ -1,6 +1,7 @@
 //! Friction at an impact: what it takes off the tangential velocity v_t (section 3.2.2 of the chapter).
 
 use crate::error::{ValueError, require};
+use nalgebra::Vector3;
 
 /// The friction of a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,5 +44,99 @@ impl Friction {
     pub fn impulse(mu: f64) -> Result<Self, ValueError> {
         let c = require("impulse friction", mu, "finite and >= 0", mu.is_finite() && mu >= 0.0)?;
         Ok(Self::Impulse(Coefficient(c)))
+    }
+
+    /// v_t+ of an impact: what is left of the tangential velocity `v_t` (m/s) when the normal closing speed is `closing` (m/s)
+    /// and restitution is `c_r`. Never more than v_t, never reversed; v_t = 0 stays 0.
+    pub fn slow(&self, v_t: Vector3<f64>, closing: f64, c_r: f64) -> Vector3<f64> {
+        match *self {
+            Friction::None => v_t,
+            Friction::Linear(c_f) => v_t * (1.0 - c_f.get()),
+            Friction::Coulomb(mu) => less(v_t, mu.get() * closing),
+            Friction::Impulse(mu) => less(v_t, mu.get() * (1.0 + c_r) * closing),
+        }
+    }
+
+    /// v_t after all the impacts of a bouncing that ends: closing speeds `closing`, c_r `closing`, c_r^2 `closing` ... with
+    /// c_r < 1 (a geometric series).
+    pub fn slow_to_the_end(&self, v_t: Vector3<f64>, closing: f64, c_r: f64) -> Vector3<f64> {
+        match *self {
+            Friction::Linear(c_f) if c_f.get() > 0.0 => Vector3::zeros(),
+            _ => self.slow(v_t, closing / (1.0 - c_r), c_r),
+        }
+    }
+
+    /// The friction of lasting contact, which is the limit of ever more and ever smaller impacts.
+    pub fn in_contact(&self) -> ContactFriction {
+        match *self {
+            Friction::Coulomb(mu) | Friction::Impulse(mu) if mu.get() > 0.0 => ContactFriction::Sliding(mu.get()),
+            Friction::Linear(c_f) if c_f.get() > 0.0 => ContactFriction::Sticking,
+            _ => ContactFriction::Sliding(0.0),
+        }
+    }
+}
+
+/// What friction does while contact lasts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ContactFriction {
+    /// |F_t| = mu |F_n| against the motion; at most that at rest. 0 is a frictionless surface.
+    Sliding(f64),
+    /// Linear friction takes the share c_f of v_t at each of infinitely many impacts: nothing is left, and nothing moves.
+    Sticking,
+}
+
+/// `v` shortened by `amount`, at most to zero.
+fn less(v: Vector3<f64>, amount: f64) -> Vector3<f64> {
+    let speed = v.norm();
+    if speed <= amount { Vector3::zeros() } else { v - v * (amount / speed) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn r19_linear_friction_keeps_one_minus_c_f() {
+        let friction = Friction::linear(0.25).unwrap();
+        assert_eq!(friction.slow(Vector3::new(4.0, -8.0, 0.0), 1.0, 0.5), Vector3::new(3.0, -6.0, 0.0));
+        assert!(Friction::linear(1.5).is_err() && Friction::linear(-0.1).is_err() && Friction::linear(f64::NAN).is_err());
+    }
+
+    #[test]
+    fn r20_r22_coulomb_takes_momentum_in_proportion_to_the_normal_speed() {
+        let friction = Friction::coulomb(0.5).unwrap();
+        let v_t = Vector3::new(3.0, 4.0, 0.0);
+        for closing in [1.0, 2.0, 4.0] {
+            assert!((v_t.norm() - friction.slow(v_t, closing, 0.9).norm() - 0.5 * closing).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn r23_r24_coulomb_never_reverses_and_zero_stays_zero() {
+        let friction = Friction::coulomb(0.5).unwrap();
+        assert_eq!(friction.slow(Vector3::new(3.0, 4.0, 0.0), 10.0, 0.9), Vector3::zeros());
+        assert_eq!(friction.slow(Vector3::new(3.0, 4.0, 0.0), 100.0, 0.9), Vector3::zeros());
+        assert_eq!(friction.slow(Vector3::zeros(), 1.0, 0.9), Vector3::zeros());
+    }
+
+    #[test]
+    fn r24_the_impulse_law_takes_one_plus_c_r_times_as_much() {
+        let v_t = Vector3::new(8.0, 0.0, 0.0);
+        let book = Friction::coulomb(0.25).unwrap().slow(v_t, 4.0, 0.5);
+        let impulse = Friction::impulse(0.25).unwrap().slow(v_t, 4.0, 0.5);
+        assert_eq!((book.x, impulse.x), (7.0, 6.5));
+    }
+
+    #[test]
+    fn the_end_of_bouncing_is_the_sum_of_its_impacts() {
+        for friction in [Friction::coulomb(0.02).unwrap(), Friction::impulse(0.02).unwrap(), Friction::None] {
+            let (c_r, start) = (0.5, Vector3::new(1.0, 2.0, 0.0));
+            let (mut v_t, mut closing) = (start, 3.0);
+            for _ in 0..60 {
+                v_t = friction.slow(v_t, closing, c_r);
+                closing *= c_r;
+            }
+            assert!((friction.slow_to_the_end(start, 3.0, c_r) - v_t).norm() < 1e-14);
+        }
     }
 }

@@ -5,3 +5,20 @@ pub mod drag;
 pub mod friction;
 pub mod gravity;
 pub mod restitution;
+
+use crate::body::{Ball, State};
+use crate::counters::Counters;
+use nalgebra::Vector3;
+
+/// An effect on the flight whose acceleration changes with the ball's state. (What does not change is summed once, by the
+/// plan.)
+pub trait Flow: std::fmt::Debug + Send + Sync {
+    /// What to call it in messages.
+    fn name(&self) -> &'static str;
+
+    /// Its share of the acceleration of `ball` in `state`, in m/s^2.
+    fn acceleration(&self, state: &State, ball: &Ball) -> Vector3<f64>;
+
+    /// Adds one evaluation to its count.
+    fn count(&self, counters: &mut Counters);
+}

@@ -1,0 +1,48 @@
+//! The exact flight under constant acceleration: a parabola, or a straight line, for a step of any length.
+
+use crate::body::State;
+use crate::integrators::Step;
+use carom_geometry::path::Path;
+use nalgebra::Vector3;
+
+/// The flight from `state` under the constant acceleration `a` for `remaining` seconds.
+///
+/// f = 1 stands for the next power of two of seconds, so that the path's terms v h and a h^2 / 2 are exact, and the same
+/// flight is the same bits however much time remains.
+pub fn step(state: &State, a: Vector3<f64>, remaining: f64) -> Step {
+    let h = next_power_of_two(remaining);
+    let zero = Vector3::zeros();
+    Step {
+        path: Path::parabola(state.position, state.velocity * h, a * (0.5 * h * h)),
+        velocity: [state.velocity, a * h, zero, zero, zero],
+        seconds: h,
+        to: remaining / h,
+    }
+}
+
+/// The least power of two >= `x`, for positive x well inside the range of f64.
+fn next_power_of_two(x: f64) -> f64 {
+    let floor = f64::from_bits(x.max(f64::MIN_POSITIVE).to_bits() & (0x7ff << 52));
+    if floor < x { 2.0 * floor } else { floor }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Point3;
+
+    #[test]
+    fn powers_of_two() {
+        for (x, p) in [(1.0, 1.0), (1.5, 2.0), (3.0, 4.0), (0.3, 0.5), (1e-3, 2f64.powi(-9)), (300.0, 512.0)] {
+            assert_eq!(next_power_of_two(x), p);
+        }
+    }
+
+    #[test]
+    fn the_same_flight_is_the_same_bits_however_long_the_step() {
+        let state = State { position: Point3::new(0.1, 0.2, 3.0), velocity: Vector3::new(1.0, -0.3, 2.0) };
+        let a = Vector3::new(0.0, 0.0, -9.81);
+        let (short, long) = (step(&state, a, 1.0), step(&state, a, 100.0));
+        assert_eq!(short.at(0.25), long.at(0.25 / 128.0));
+    }
+}

@@ -1,0 +1,179 @@
+//! Collision response: the velocity after an impact.
+//!
+//! At one surface it is the chapter's: v_n and v_t apart, v_n+ = -c_r v_n-, v_t+ by friction, v+ = v_n+ + v_t+. At several at
+//! once it is Moreau's: p, the velocity nearest to v- that leaves none of them behind, takes the place of v_t, and what p adds
+//! along each normal the place of v_n; for one surface that is the chapter's law to the letter. (J. J. Moreau, in *Nonsmooth
+//! Mechanics and Applications*, 1988.)
+
+use crate::contacts::Contact;
+use crate::counters::Counters;
+use crate::effects::friction::Friction;
+use crate::support::project;
+use crate::surface::Material;
+use crate::tolerance::rate_rounding;
+use nalgebra::Vector3;
+
+/// Repeats of the response before restitution is given up for what is left (H19: acute normals may close again).
+const MAX_REPEATS: u32 = 32;
+
+/// The velocity after an impact with velocity `v` (m/s), of which at least one of `contacts` is closing; leaves in each contact the
+/// rate with which it separates. `materials[i]` is what contact i is made of.
+pub fn respond(v: Vector3<f64>, contacts: &mut [Contact], materials: &[Material], counters: &mut Counters) -> Vector3<f64> {
+    let after = match contacts.iter().filter(|c| c.rate < 0.0).count() {
+        1 => respond_to_one(v, contacts, materials, counters),
+        _ => None,
+    };
+    after.unwrap_or_else(|| respond_to_all(v, contacts, materials, counters))
+}
+
+/// The chapter's response to the only closing contact; none if it drives the ball into another.
+fn respond_to_one(
+    v: Vector3<f64>,
+    contacts: &mut [Contact],
+    materials: &[Material],
+    counters: &mut Counters,
+) -> Option<Vector3<f64>> {
+    let hit = contacts.iter().position(|c| c.rate < 0.0)?;
+    let (n, closing) = (contacts[hit].normal, -contacts[hit].rate);
+    let c_r = materials[hit].restitution.coefficient();
+    let v_t = v - n * n.dot(&v);
+    let rebound = materials[hit].restitution.rebound(closing);
+    let after = slowed(&materials[hit].friction, v_t, closing, c_r, counters) + n * rebound;
+    let rates = |i: usize, c: &Contact| if i == hit { rebound } else { changed_rate(c, &v, &after) };
+    if contacts.iter().enumerate().any(|(i, c)| rates(i, c) < 0.0) {
+        return None;
+    }
+    counters.restitution += 1;
+    for (i, contact) in contacts.iter_mut().enumerate() {
+        contact.rate = rates(i, contact);
+    }
+    Some(after)
+}
+
+/// The rate of a contact after the velocity went from `before` to `after`: unchanged where the change has no part in it.
+fn changed_rate(contact: &Contact, before: &Vector3<f64>, after: &Vector3<f64>) -> f64 {
+    let change = contact.normal.dot(&(after - before));
+    if change.abs() <= rate_rounding(before.norm()) { contact.rate } else { contact.rate + change }
+}
+
+/// Moreau's response to all contacts.
+fn respond_to_all(
+    v: Vector3<f64>,
+    contacts: &mut [Contact],
+    materials: &[Material],
+    counters: &mut Counters,
+) -> Vector3<f64> {
+    let mut v = v;
+    for repeat in 0..=MAX_REPEATS {
+        let speed = v.norm();
+        let normals: Vec<_> = contacts.iter().map(|c| c.normal).collect();
+        let projection = project(&v, &normals);
+        let bounces = repeat < MAX_REPEATS;
+        let mut after = projection.velocity;
+        for (i, impulse) in projection.loads() {
+            let c_r = materials[i].restitution.coefficient();
+            after = slowed(&materials[i].friction, after, impulse, c_r, counters);
+        }
+        if bounces {
+            for (i, impulse) in projection.loads() {
+                counters.restitution += 1;
+                after += contacts[i].normal * materials[i].restitution.rebound(impulse);
+            }
+        }
+        // Rounding must not gain energy.
+        let gained = after.norm();
+        if gained > speed {
+            after *= speed / gained;
+        }
+        v = after;
+        let rounding = rate_rounding(speed);
+        for contact in contacts.iter_mut() {
+            let rate = contact.normal.dot(&v);
+            contact.rate = if rate.abs() <= rounding { 0.0 } else { rate };
+        }
+        if contacts.iter().all(|c| c.rate >= 0.0) {
+            return v;
+        }
+    }
+    for contact in contacts.iter_mut() {
+        contact.rate = contact.rate.max(0.0);
+    }
+    v
+}
+
+/// Friction, where there is any: a surface without it is not asked.
+fn slowed(friction: &Friction, v_t: Vector3<f64>, closing: f64, c_r: f64, counters: &mut Counters) -> Vector3<f64> {
+    if *friction == Friction::None {
+        return v_t;
+    }
+    counters.friction += 1;
+    friction.slow(v_t, closing, c_r)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::restitution::Restitution;
+
+    fn material(c_r: f64, friction: Friction) -> Material {
+        Material { restitution: Restitution::new(c_r).unwrap(), friction }
+    }
+
+    fn contacts(v: &Vector3<f64>, normals: &[Vector3<f64>]) -> Vec<Contact> {
+        normals.iter().map(|n| Contact { surface: 0, site: None, normal: *n, rate: n.dot(v) }).collect()
+    }
+
+    fn answer(v: Vector3<f64>, normals: &[Vector3<f64>], m: Material) -> Vector3<f64> {
+        let mut touched = contacts(&v, normals);
+        respond(v, &mut touched, &vec![m; normals.len()], &mut Counters::default())
+    }
+
+    #[test]
+    fn r16_normal_and_tangential_parts_are_answered_apart() {
+        let n = Vector3::new(0.6, 0.0, 0.8);
+        let v = 3.0 * Vector3::y() - 2.0 * n;
+        let after = answer(v, &[n], material(0.5, Friction::linear(0.5).unwrap()));
+        assert!((after - (1.5 * Vector3::y() + 1.0 * n)).norm() < 1e-15);
+    }
+
+    #[test]
+    fn r17_the_normal_speed_is_reversed_and_reduced_by_c_r() {
+        for c_r in [0.0, 0.25, 0.5, 1.0] {
+            let after = answer(Vector3::new(1.0, 0.0, -4.0), &[Vector3::z()], material(c_r, Friction::None));
+            assert_eq!(after, Vector3::new(1.0, 0.0, 4.0 * c_r));
+        }
+    }
+
+    #[test]
+    fn r25_the_answer_is_the_sum_of_both_parts() {
+        let m = material(0.5, Friction::coulomb(0.25).unwrap());
+        let after = answer(Vector3::new(3.0, 0.0, -4.0), &[Vector3::z()], m);
+        assert_eq!(after, Vector3::new(2.0, 0.0, 2.0));
+    }
+
+    #[test]
+    fn r12_a_corner_reverses_the_velocity_whatever_the_order() {
+        let v = Vector3::new(-1.0, -2.0, -3.0);
+        let [x, y, z] = [Vector3::x(), Vector3::y(), Vector3::z()];
+        for normals in [[x, y, z], [z, y, x], [y, x, z], [y, z, x], [z, x, y], [x, z, y]] {
+            for c_r in [0.0, 0.5, 1.0] {
+                assert_eq!(answer(v, &normals, material(c_r, Friction::None)), -c_r * v);
+            }
+        }
+    }
+
+    #[test]
+    fn acute_corners_leave_nothing_closing_and_gain_no_energy() {
+        let m = material(1.0, Friction::None);
+        for k in 1..200 {
+            let angle = f64::from(k) * 0.0157;
+            let normals = [Vector3::z(), Vector3::new(angle.sin(), 0.0, angle.cos())];
+            let v = Vector3::new(-1.0, 0.3, -1.0);
+            let mut touched = contacts(&v, &normals);
+            let after = respond(v, &mut touched, &[m, m], &mut Counters::default());
+            assert!(after.norm() <= v.norm());
+            assert!(touched.iter().all(|c| c.rate >= 0.0));
+            assert!(normals.iter().all(|n| n.dot(&after) >= -1e-14), "{k}");
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! What carries a ball: the contacts that push, and how strongly.
+//!
+//! Both questions are one: of all vectors that no contact forbids (n_i.w >= 0), which is nearest to a given one? For a velocity it
+//! is Moreau's projection, for an acceleration Gauss's principle; the multipliers are the impulses and the loads. In three
+//! dimensions at most three contacts push, so the few subsets are tried, the smallest first.
+
+use crate::tolerance::rate_rounding;
+use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
+
+/// The nearest allowed vector, and what each contact adds to reach it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Projection {
+    /// The nearest vector with n_i.w >= 0 for all i.
+    pub velocity: Vector3<f64>,
+    pushing: [(usize, f64); 3],
+    count: usize,
+}
+
+impl Projection {
+    /// The contacts that push, as (index, load), each load >= 0 and along its normal.
+    pub fn loads(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        self.pushing[..self.count].iter().copied()
+    }
+
+    /// How many contacts push.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+}
+
+/// The vector nearest to `w` that no normal forbids.
+pub fn project(w: &Vector3<f64>, normals: &[Vector3<f64>]) -> Projection {
+    project_offset(w, normals, |_| 0.0)
+}
+
+/// The vector nearest to `w` with n_i.w >= -`allowed(i)`: a contact that curves away lets the ball accelerate towards it.
+pub fn project_offset(w: &Vector3<f64>, normals: &[Vector3<f64>], allowed: impl Fn(usize) -> f64) -> Projection {
+    let rounding = rate_rounding(w.norm());
+    let free = |v: &Vector3<f64>| normals.iter().enumerate().all(|(i, n)| n.dot(v) + allowed(i) >= -rounding);
+    let none = Projection { velocity: *w, pushing: [(0, 0.0); 3], count: 0 };
+    if normals.iter().enumerate().all(|(i, n)| n.dot(w) + allowed(i) >= 0.0) {
+        return none;
+    }
+    let m = normals.len();
+    let lack = |i: usize| -(normals[i].dot(w) + allowed(i));
+    for i in 0..m {
+        let load = lack(i);
+        let v = w + normals[i] * load;
+        if load >= 0.0 && free(&v) {
+            return Projection { velocity: v, pushing: [(i, load), (0, 0.0), (0, 0.0)], count: 1 };
+        }
+    }
+    for i in 0..m {
+        for j in i + 1..m {
+            let c = normals[i].dot(&normals[j]);
+            let Some(inverse) = Matrix2::new(1.0, c, c, 1.0).try_inverse() else { continue };
+            let load = inverse * Vector2::new(lack(i), lack(j));
+            let v = w + normals[i] * load.x + normals[j] * load.y;
+            if load.min() >= 0.0 && free(&v) {
+                return Projection { velocity: v, pushing: [(i, load.x), (j, load.y), (0, 0.0)], count: 2 };
+            }
+        }
+    }
+    for i in 0..m {
+        for j in i + 1..m {
+            for k in j + 1..m {
+                let across = Matrix3::from_columns(&[normals[i], normals[j], normals[k]]);
+                let Some(inverse) = (across.transpose() * across).try_inverse() else { continue };
+                let load = inverse * Vector3::new(lack(i), lack(j), lack(k));
+                let v = if (0..m).all(|i| allowed(i) == 0.0) { Vector3::zeros() } else { w + across * load };
+                if load.min() >= 0.0 && free(&v) {
+                    return Projection { velocity: v, pushing: [(i, load.x), (j, load.y), (k, load.z)], count: 3 };
+                }
+            }
+        }
+    }
+    // Normals so nearly dependent that no subset solves: nothing moves.
+    Projection { velocity: Vector3::zeros(), ..none }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_floor_carries_the_weight_and_lets_the_rest_go() {
+        let p = project(&Vector3::new(2.0, 0.0, -9.0), &[Vector3::z()]);
+        assert_eq!(p.velocity, Vector3::new(2.0, 0.0, 0.0));
+        assert_eq!(p.loads().collect::<Vec<_>>(), [(0, 9.0)]);
+    }
+
+    #[test]
+    fn r33_a_groove_shares_the_weight_between_its_sides() {
+        let s = 0.5f64.sqrt();
+        let p = project(&Vector3::new(0.0, 0.0, -2.0), &[Vector3::new(s, 0.0, s), Vector3::new(-s, 0.0, s)]);
+        assert!(p.velocity.norm() < 1e-15);
+        for (_, load) in p.loads() {
+            assert!((load - 2.0 * s).abs() < 1e-15);
+        }
+        assert_eq!(p.count(), 2);
+    }
+
+    #[test]
+    fn r33_a_corner_carries_with_three() {
+        let p = project(&Vector3::new(-1.0, -2.0, -3.0), &[Vector3::x(), Vector3::y(), Vector3::z()]);
+        assert_eq!(p.velocity, Vector3::zeros());
+        assert_eq!(p.loads().collect::<Vec<_>>(), [(0, 1.0), (1, 2.0), (2, 3.0)]);
+    }
+
+    #[test]
+    fn a_wall_that_is_not_pressed_carries_nothing() {
+        let p = project(&Vector3::new(1.0, 0.0, -9.0), &[Vector3::x(), Vector3::z()]);
+        assert_eq!(p.loads().collect::<Vec<_>>(), [(1, 9.0)]);
+        assert_eq!(project(&Vector3::new(1.0, 0.0, 2.0), &[Vector3::x(), Vector3::z()]).count(), 0);
+    }
+}

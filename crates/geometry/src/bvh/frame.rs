@@ -1,0 +1,225 @@
+//! The tree's own coordinates, and queries in them with room for every rounding.
+
+use super::{FatSegment, WIDTH};
+use crate::bounds::Aabb;
+
+/// u of f64 and of f32: the margins below are sums of these.
+const U64: f64 = f64::EPSILON / 2.0;
+const U32: f64 = f32::EPSILON as f64 / 2.0;
+/// A margin beyond this is so much larger than the tree, which has a half extent of 1, that no box can be told apart.
+const HOPELESS: f64 = 1048576.0;
+/// Ends within this many half extents need no clipping before they become f32.
+const NEAR: f64 = 4.0;
+/// Components of a direction below 2^-60 are taken as this: it moves the segment by less than U32 * `U32`, which the
+/// margin covers, and there is no division by zero, no infinity and no NaN.
+const LEAST_STEP: f32 = 1.0 / (1u64 << 60) as f32;
+
+/// The map from the caller's coordinates to the tree's: x * scale - centre. Boxes of the tree come to lie in [-1, 1].
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Frame {
+    /// A power of two; 0 if everything is at one point.
+    scale: f64,
+    /// The middle of everything, already scaled. Any value would be right.
+    centre: [f64; 3],
+}
+
+/// A fat segment in the tree's coordinates: the part that is near the tree, from `start` to `end` in the caller's s.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct LocalSegment {
+    start: f64,
+    end: f64,
+    /// For each axis: which planes are met first, and the points from which the near and the far one are measured.
+    near: [usize; 3],
+    near_from: [f32; 3],
+    far_from: [f32; 3],
+    inverse: [f32; 3],
+}
+
+impl Frame {
+    pub(super) fn of(bounds: &Aabb) -> Self {
+        if bounds.is_empty() {
+            return Self { scale: 0.0, centre: [0.0; 3] };
+        }
+        let half = (0..3).fold(0.0, |h: f64, i| h.max(bounds.max()[i] / 2.0 - bounds.min()[i] / 2.0));
+        let scale = scale_to_one(half);
+        let centre = [0, 1, 2].map(|i| bounds.min()[i] * scale / 2.0 + bounds.max()[i] * scale / 2.0);
+        Self { scale, centre }
+    }
+
+    /// x * scale is exact or lost in the margin; the difference has one rounding.
+    fn local(&self, x: &nalgebra::Point3<f64>) -> [f64; 3] {
+        [0, 1, 2].map(|i| x[i] * self.scale - self.centre[i])
+    }
+
+    /// A box of the tree in f32, rounded outwards from `local`, whose own rounding (below U64) the queries' margins cover.
+    pub(super) fn item_box(&self, b: &Aabb) -> ([f32; 3], [f32; 3]) {
+        (self.local(b.min()).map(round_down), self.local(b.max()).map(round_up))
+    }
+
+    /// The box of a query in f32, with a margin for the rounding of `local` on both sides. Beyond 2 nothing is lost.
+    pub(super) fn outer_box(&self, b: &Aabb) -> ([f32; 3], [f32; 3]) {
+        let margin = |v: f64| 8.0 * U64 * (v.abs() + 1.0);
+        let lo = self.local(b.min()).map(|v| v.clamp(-2.0, 2.0)).map(|v| round_down(v - margin(v)));
+        let hi = self.local(b.max()).map(|v| v.clamp(-2.0, 2.0)).map(|v| round_up(v + margin(v)));
+        (lo, hi)
+    }
+
+    /// The query, or `None` if it is certain to miss everything.
+    ///
+    /// Rounding in f64, with `reach` the largest coordinate: an end 1 u reach, the direction and the product with s 2 u
+    /// reach each, the sum 1 u reach; 8 u covers it.
+    pub(super) fn segment(&self, query: &FatSegment, bounds: &Aabb) -> Option<LocalSegment> {
+        let FatSegment { from, to, radius } = query;
+        let all = LocalSegment::new(0.0, 1.0, [0.0; 3], [0.0; 3], NEAR);
+        if !(from.coords.iter().chain(&to.coords).all(|c| c.is_finite()) && radius.is_finite()) {
+            return (!bounds.is_empty()).then_some(all);
+        }
+        if !bounds.intersects(&Aabb::of_points([from, to]).inflate(radius.max(0.0))) {
+            return None;
+        }
+        let (a, b) = (self.local(from), self.local(to));
+        let reach = a.iter().chain(&b).fold(0.0, |m: f64, c| m.max(c.abs()));
+        let radius = radius.max(0.0) * self.scale + 8.0 * U64 * reach;
+        // Also true where `reach` or the radius is no longer finite.
+        if !(radius <= HOPELESS && reach <= HOPELESS / U64) {
+            return Some(all);
+        }
+        let d = [0, 1, 2].map(|i| b[i] - a[i]);
+        if reach <= NEAR {
+            return Some(LocalSegment::new(0.0, 1.0, a, b, radius));
+        }
+        let (s0, s1) = clip(&a, &d, (1.0 + radius) * (1.0 + 8.0 * U64))?;
+        let at = |s: f64| [0, 1, 2].map(|i| a[i] + s * d[i]);
+        Some(LocalSegment::new(s0, s1, at(s0), at(s1), radius))
+    }
+}
+
+/// The power of two that brings `half` into [1/2, 1), or as near as f64 has one; 0 for 0.
+fn scale_to_one(half: f64) -> f64 {
+    if half == 0.0 {
+        return 0.0;
+    }
+    let exponent = ((half.to_bits() >> 52) & 0x7ff) as i64;
+    // Biased: half is in [2^(e-1023), 2^(e-1022)), so that the scale's own exponent is 1022 - e + 1023, at least 1.
+    f64::from_bits(((2045 - exponent.max(1)).max(1) as u64) << 52)
+}
+
+/// The part of [0, 1] where a + s d is in [-bound, bound]^3, rounded outwards; `None` if there is none.
+fn clip(a: &[f64; 3], d: &[f64; 3], bound: f64) -> Option<(f64, f64)> {
+    let (mut s0, mut s1) = (0.0_f64, 1.0_f64);
+    for i in 0..3 {
+        if d[i] == 0.0 {
+            if a[i].abs() > bound {
+                return None;
+            }
+            continue;
+        }
+        let (t, w) = ((-bound - a[i]) / d[i], (bound - a[i]) / d[i]);
+        // Two roundings each, of relative size; what lies beyond [-1, 2] does not count.
+        let (near, far) = (t.min(w).clamp(-1.0, 2.0), t.max(w).clamp(-1.0, 2.0));
+        s0 = s0.max(near - 4.0 * U64 * near.abs());
+        s1 = s1.min(far + 4.0 * U64 * far.abs());
+    }
+    (s0 <= s1).then_some((s0, s1))
+}
+
+impl LocalSegment {
+    /// From `a` at s = `start` to `b` at s = `end`.
+    ///
+    /// Rounding in f32, with m the largest coordinate and u that of f32: the ends and the direction 3 u m, the points
+    /// that planes are measured from u (m + radius), and 3 u relative in (plane - point) * inverse, which is 6 u m where
+    /// it matters, at s <= 1. Room of u (16 m + 2 radius + 2) covers them, and the U64 of the boxes.
+    fn new(start: f64, end: f64, a: [f64; 3], b: [f64; 3], radius: f64) -> Self {
+        let m = a.iter().chain(&b).fold(0.0, |m: f64, c| m.max(c.abs()));
+        let radius = round_up(radius + U32 * (16.0 * m + 2.0 * radius + 2.0));
+        let (a, b) = (a.map(|c| c as f32), b.map(|c| c as f32));
+        let step = [0, 1, 2].map(|i| b[i] - a[i]);
+        let forward = step.map(|c| c >= 0.0);
+        Self {
+            start,
+            end,
+            near: [0, 1, 2].map(|i| if forward[i] { i } else { i + 3 }),
+            near_from: [0, 1, 2].map(|i| if forward[i] { a[i] + radius } else { a[i] - radius }),
+            far_from: [0, 1, 2].map(|i| if forward[i] { a[i] - radius } else { a[i] + radius }),
+            inverse: step.map(|c| (if c >= 0.0 { 1.0 } else { -1.0 }) / c.abs().max(LEAST_STEP)),
+        }
+    }
+
+    /// For each child a lower bound of where it is entered, in [0, 1], and a bit for each that is met up to `limit`.
+    #[inline]
+    pub(super) fn entries(&self, planes: &[[f32; WIDTH]; 6], limit: f32) -> ([f32; WIDTH], u32) {
+        let (mut entry, mut exit) = ([0.0_f32; WIDTH], [limit; WIDTH]);
+        for i in 0..3 {
+            let near = &planes[self.near[i]];
+            let far = &planes[(self.near[i] + 3) % 6];
+            let (near_from, far_from, inverse) = (self.near_from[i], self.far_from[i], self.inverse[i]);
+            for j in 0..WIDTH {
+                // Plain comparisons: there are no NaN, and `f32::max` would look for them.
+                let (t, w) = ((near[j] - near_from) * inverse, (far[j] - far_from) * inverse);
+                entry[j] = if t > entry[j] { t } else { entry[j] };
+                exit[j] = if w < exit[j] { w } else { exit[j] };
+            }
+        }
+        let mut met = 0;
+        for j in 0..WIDTH {
+            met |= u32::from(entry[j] <= exit[j]) << j;
+        }
+        (entry, met)
+    }
+
+    /// The caller's limit of s as one of this part, rounded up.
+    pub(super) fn local_limit(&self, s: f64) -> f32 {
+        if s >= self.end || s.is_nan() {
+            return 1.0;
+        }
+        if s < self.start {
+            return -1.0;
+        }
+        // start <= s < end, so that the length is not 0; three roundings.
+        round_up((s - self.start) / (self.end - self.start) * (1.0 + 8.0 * U64))
+    }
+}
+
+/// The largest f32 that is not above `v`.
+fn round_down(v: f64) -> f32 {
+    let near = v as f32;
+    if f64::from(near) > v { near.next_down() } else { near }
+}
+
+/// The least f32 that is not below `v`.
+fn round_up(v: f64) -> f32 {
+    -round_down(-v)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn f32_is_rounded_outwards() {
+        for v in [0.1, -0.1, 1.0, -1.0, 0.0, 1e-50, -1e-50, 1.0 + 1e-12] {
+            assert!(f64::from(round_down(v)) <= v && v <= f64::from(round_up(v)), "{v}");
+            assert!(round_up(v) <= round_down(v).next_up(), "{v}");
+        }
+    }
+
+    #[test]
+    fn the_scale_is_a_power_of_two_that_brings_half_to_one() {
+        for k in -1020..=1021 {
+            let half = 1.5 * 2.0_f64.powi(k);
+            assert_eq!(half * scale_to_one(half), 0.75, "2^{k}");
+        }
+        assert_eq!(scale_to_one(0.0), 0.0);
+        assert!(f64::MAX * scale_to_one(f64::MAX) <= 4.0);
+        assert!(scale_to_one(5e-324).is_finite());
+    }
+
+    #[test]
+    fn clipping_keeps_what_is_inside() {
+        assert_eq!(clip(&[0.0; 3], &[0.0; 3], 1.0), Some((0.0, 1.0)));
+        assert_eq!(clip(&[2.0, 0.0, 0.0], &[0.0; 3], 1.0), None);
+        let (s0, s1) = clip(&[-5.0, 0.0, 0.0], &[10.0, 0.0, 0.0], 1.0).unwrap();
+        assert!(s0 <= 0.4 && 0.6 <= s1 && s1 - s0 < 0.2 + 1e-14);
+        assert_eq!(clip(&[-5.0, -5.0, 0.0], &[10.0, 2.0, 0.0], 1.0), None);
+    }
+}

@@ -1,0 +1,1 @@
+//! Segments against triangles, decided exactly on the original points.

@@ -1,0 +1,101 @@
+//! The steps of `cargo xtask verify`, in their order.
+
+use crate::log::Log;
+use crate::project::Project;
+use crate::{Result, commands, readme};
+use std::path::{Path, PathBuf};
+use std::{fs, io};
+
+/// One check of the whole project.
+pub struct Step {
+    /// What `--only` calls it.
+    pub name: &'static str,
+    /// What it checks.
+    pub what: &'static str,
+    /// Does it; true if all is well. An error fails the step as well.
+    pub run: fn(&Project, &mut Log) -> Result<bool>,
+}
+
+/// Cheap ones first. The debug profile is built once, for the tests; the release profile once, for the scenes and the
+/// README.
+pub const STEPS: [Step; 8] = [
+    Step { name: "format", what: "the code is formatted", run: format },
+    Step { name: "clippy", what: "no warning of rustc or clippy, in any target", run: clippy },
+    Step { name: "tests", what: "the tests of every crate; no snapshot is written", run: tests },
+    Step { name: "doctests", what: "the examples in the documentation", run: doctests },
+    Step { name: "docs", what: "the documentation builds without a warning", run: docs },
+    Step { name: "snapshots", what: "no snapshot waits for review", run: snapshots },
+    Step { name: "scenes", what: "the scenes of the program are valid and run to their end", run: scenes },
+    Step { name: "readme", what: "the README's commands exist and its generated blocks are fresh", run: readme },
+];
+
+fn format(project: &Project, log: &mut Log) -> Result<bool> {
+    // rustfmt asks the terminal, not cargo, about colours.
+    log.run(&mut project.cargo(["fmt", "--all", "--check", "--", "--color", "never"]))
+}
+
+fn clippy(project: &Project, log: &mut Log) -> Result<bool> {
+    log.run(&mut project.cargo(["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))
+}
+
+fn tests(project: &Project, log: &mut Log) -> Result<bool> {
+    // Without the benchmarks, which clippy builds and which say nothing when not optimised.
+    let kinds = ["test", "--workspace", "--no-fail-fast", "--lib", "--bins", "--tests", "--examples"];
+    // A snapshot that differs must fail, whatever the caller's settings of insta are.
+    log.run(project.cargo(kinds).env("CI", "true").env("INSTA_UPDATE", "no").env_remove("INSTA_FORCE_PASS"))
+}
+
+fn doctests(project: &Project, log: &mut Log) -> Result<bool> {
+    log.run(&mut project.cargo(["test", "--workspace", "--no-fail-fast", "--doc"]))
+}
+
+fn docs(project: &Project, log: &mut Log) -> Result<bool> {
+    log.run(project.cargo(["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "-D warnings"))
+}
+
+fn snapshots(project: &Project, log: &mut Log) -> Result<bool> {
+    let mut waiting = Vec::new();
+    find_waiting(project.root(), project.target(), &mut waiting)?;
+    waiting.sort();
+    for path in &waiting {
+        let path = path.strip_prefix(project.root()).unwrap_or(path);
+        log.line(&format!("{}: not reviewed; accept or reject it with `cargo insta review`", path.display()))?;
+    }
+    Ok(waiting.is_empty())
+}
+
+fn find_waiting(folder: &Path, target: &Path, found: &mut Vec<PathBuf>) -> io::Result<()> {
+    for entry in fs::read_dir(folder)? {
+        let entry = entry?;
+        let (path, name) = (entry.path(), entry.file_name());
+        let name = name.to_string_lossy();
+        if entry.file_type()?.is_dir() {
+            if path != target && name != ".git" && name != "target" {
+                find_waiting(&path, target, found)?;
+            }
+        } else if name.ends_with(".snap.new") || name.ends_with(".pending-snap") {
+            found.push(path);
+        }
+    }
+    Ok(())
+}
+
+fn scenes(project: &Project, log: &mut Log) -> Result<bool> {
+    project.build_carom()?;
+    let mut passed = true;
+    for scene in project.scenes()? {
+        passed &= log.run(project.carom().args(["check", &scene]))?;
+        passed &= log.run(project.carom().args(["run", &scene]))?;
+    }
+    Ok(passed)
+}
+
+fn readme(project: &Project, log: &mut Log) -> Result<bool> {
+    project.build_carom()?;
+    let mut wrong = commands::wrong(project, &project.read(readme::PATH)?)?;
+    wrong.extend(readme::stale(project)?);
+    for sentence in &wrong {
+        log.line(sentence)?;
+    }
+    Ok(wrong.is_empty())
+}
