@@ -98,11 +98,12 @@ fn examine(name: &str, vertices: &[Point3<f64>], faces: &[[u32; 3]]) -> Totals {
 }
 
 fn tell(severity: doctor::Severity, message: &str) {
-    match severity {
-        doctor::Severity::Error => say(&render_plain(Severity::Error, message, None, styled())),
-        doctor::Severity::Warning => say(&render_plain(Severity::Warning, message, None, styled())),
-        doctor::Severity::Note => say(&format!("note: {message}")),
-    }
+    let severity = match severity {
+        doctor::Severity::Error => Severity::Error,
+        doctor::Severity::Warning => Severity::Warning,
+        doctor::Severity::Note => Severity::Note,
+    };
+    say(&render_plain(severity, message, None, styled()));
 }
 
 fn conclude(path: &str, size: &str, totals: Totals) -> Result<(), AppError> {

@@ -5,7 +5,7 @@ use crate::error::AppError;
 use crate::scene::file::SceneFile;
 use schemars::Schema;
 use schemars::generate::SchemaSettings;
-use schemars::transform::{RecursiveTransform, Transform};
+use schemars::transform::RecursiveTransform;
 use serde_json::Value;
 
 /// Prints the schema.

@@ -24,10 +24,10 @@ pub const VERSION: u64 = 1;
 pub const GRID_LIMIT: u64 = 10_000_000;
 
 /// Where in the file something is.
-macro_rules! path {
+macro_rules! at {
     ($($step:expr),* $(,)?) => { &[$($crate::scene::tree::Step::from($step)),*] };
 }
-pub(super) use path;
+pub(super) use at;
 
 /// Builds a scene, collecting what is wrong with it.
 pub struct Builder<'a> {
@@ -43,7 +43,7 @@ impl Builder<'_> {
 
     /// The value, or none and a note at `path`.
     pub fn accept<T>(&mut self, path: &[Step<'_>], value: Result<T, ValueError>) -> Option<T> {
-        value.map_err(|e| self.refuse(path, Problem::error(e.to_string()))).ok()
+        value.map_err(|e| self.refuse(path, Problem::new(e.to_string()))).ok()
     }
 
     /// The scene, and for each ball the number of its table in the file; complete only if there are no problems.
@@ -52,13 +52,13 @@ impl Builder<'_> {
     pub fn scene(&mut self, file: &SceneFile, folder: &Path) -> (Scene, Vec<usize>) {
         if file.version != VERSION {
             let message = format!("version {} of the scene format is unknown", file.version);
-            self.refuse(path!["version"], Problem::error(message).help(format!("this program reads version {VERSION}")));
+            self.refuse(at!["version"], Problem::new(message).help(format!("this program reads version {VERSION}")));
         }
         if !(file.duration.is_finite() && file.duration > 0.0) {
             let message = format!("duration is {:?}, but must be finite and > 0, in s", file.duration);
-            self.refuse(path!["duration"], Problem::error(message));
+            self.refuse(at!["duration"], Problem::new(message));
         }
-        let gravity = file.gravity.and_then(|g| self.accept(path!["gravity"], Gravity::uniform(Vector3::from(g))));
+        let gravity = file.gravity.and_then(|g| self.accept(at!["gravity"], Gravity::uniform(Vector3::from(g))));
         let drag = file.air.as_ref().and_then(|air| self.drag(air));
         let materials = self.materials(&file.materials);
         let surfaces = shapes::surfaces(self, &file.surfaces, &materials, folder);
@@ -72,30 +72,30 @@ impl Builder<'_> {
         const LAWS: &str = "drag = { linear = k } in kg/s, or drag = { coefficient = C, density = rho }";
         let Some(table) = &air.drag else {
             if air.wind.is_some() {
-                let problem = Problem::error("wind without a drag law does nothing");
-                self.refuse(path!["air", "wind"], problem.help(format!("add {LAWS}, or leave `wind` out")));
+                let problem = Problem::new("wind without a drag law does nothing");
+                self.refuse(at!["air", "wind"], problem.help(format!("add {LAWS}, or leave `wind` out")));
             }
             return None;
         };
         let drag = match (table.linear, table.coefficient, table.density) {
-            (Some(k), None, None) => self.accept(path!["air", "drag", "linear"], Drag::linear(k)),
+            (Some(k), None, None) => self.accept(at!["air", "drag", "linear"], Drag::linear(k)),
             (None, Some(coefficient), Some(density)) => {
                 let drag = Drag::quadratic(coefficient, density);
                 let key = if drag.is_err_and(|e| e.name.contains("density")) { "density" } else { "coefficient" };
-                self.accept(path!["air", "drag", key], drag)
+                self.accept(at!["air", "drag", key], drag)
             }
             (None, Some(_), None) | (None, None, Some(_)) => {
-                let problem = Problem::error("quadratic drag needs both `coefficient` and `density`");
-                self.refuse(path!["air", "drag"], problem.help("about 0.47 for a sphere, and 1.204 kg/m^3 at 20 C"));
+                let problem = Problem::new("quadratic drag needs both `coefficient` and `density`");
+                self.refuse(at!["air", "drag"], problem.help("about 0.47 for a sphere, and 1.204 kg/m^3 at 20 C"));
                 None
             }
             _ => {
-                self.refuse(path!["air", "drag"], Problem::error("drag needs exactly one law").help(LAWS));
+                self.refuse(at!["air", "drag"], Problem::new("drag needs exactly one law").help(LAWS));
                 None
             }
         };
         match air.wind {
-            Some(wind) => drag.and_then(|d| self.accept(path!["air", "wind"], d.in_wind(Vector3::from(wind)))),
+            Some(wind) => drag.and_then(|d| self.accept(at!["air", "wind"], d.in_wind(Vector3::from(wind)))),
             None => drag,
         }
     }
@@ -106,14 +106,14 @@ impl Builder<'_> {
         for (name, table) in tables {
             let name = name.as_str();
             let restitution = Restitution::new(table.restitution);
-            let restitution = self.accept(path!["materials", name, "restitution"], restitution);
+            let restitution = self.accept(at!["materials", name, "restitution"], restitution);
             let (law, friction) = match table.friction {
                 None => ("", Ok(Friction::None)),
                 Some(FrictionTable::Linear(c_f)) => ("linear", Friction::linear(c_f)),
                 Some(FrictionTable::Coulomb(mu)) => ("coulomb", Friction::coulomb(mu)),
                 Some(FrictionTable::Impulse(mu)) => ("impulse", Friction::impulse(mu)),
             };
-            let friction = self.accept(path!["materials", name, "friction", law], friction);
+            let friction = self.accept(at!["materials", name, "friction", law], friction);
             let material = restitution.zip(friction);
             let material = material.map(|(restitution, friction)| Material { restitution, friction });
             materials.insert(name.to_owned(), material);
@@ -127,14 +127,14 @@ impl Builder<'_> {
         for (i, table) in tables.iter().enumerate() {
             let (count, step) = table.grid.as_ref().map_or(([1; 3], [0.0; 3]), |grid| (grid.count, grid.step));
             if let Some(axis) = count.iter().position(|&n| n == 0) {
-                let problem = Problem::error("a grid has at least one ball along each axis");
-                self.refuse(path!["balls", i, "grid", "count", axis], problem);
+                let problem = Problem::new("a grid has at least one ball along each axis");
+                self.refuse(at!["balls", i, "grid", "count", axis], problem);
                 continue;
             }
             let total = count.iter().map(|&n| u64::from(n)).try_fold(1_u64, u64::checked_mul);
             if total.is_none_or(|n| n > GRID_LIMIT) {
-                let problem = Problem::error(format!("the grid has more than {GRID_LIMIT} balls"));
-                self.refuse(path!["balls", i, "grid", "count"], problem);
+                let problem = Problem::new(format!("the grid has more than {GRID_LIMIT} balls"));
+                self.refuse(at!["balls", i, "grid", "count"], problem);
                 continue;
             }
             for place in places(table.position, count, step) {
@@ -144,7 +144,7 @@ impl Builder<'_> {
                         origins.push(i);
                     }
                     Err(error) => {
-                        self.refuse(path!["balls", i, error.name], Problem::error(error.to_string()));
+                        self.refuse(at!["balls", i, error.name], Problem::new(error.to_string()));
                         break;
                     }
                 }
@@ -155,16 +155,16 @@ impl Builder<'_> {
 
     fn rest(&mut self, table: &RestTable) -> Option<RestThresholds> {
         match (table.length, table.speed, table.distance, table.force) {
-            (Some(length), None, None, None) => self.accept(path!["rest", "length"], RestThresholds::length(length)),
+            (Some(length), None, None, None) => self.accept(at!["rest", "length"], RestThresholds::length(length)),
             (None, Some(speed), Some(distance), Some(force)) => {
                 let rest = RestThresholds::book(speed, distance, force);
                 let keys = ["speed", "distance", "force"];
                 let key = rest.err().and_then(|e| keys.into_iter().find(|key| e.name.contains(key)));
-                self.accept(path!["rest", key.unwrap_or("speed")], rest)
+                self.accept(at!["rest", key.unwrap_or("speed")], rest)
             }
             _ => {
-                let problem = Problem::error("the rest thresholds are either `length`, or `speed`, `distance` and `force`");
-                self.refuse(path!["rest"], problem.help("without [rest] they follow from the scene"));
+                let problem = Problem::new("the rest thresholds are either `length`, or `speed`, `distance` and `force`");
+                self.refuse(at!["rest"], problem.help("without [rest] they follow from the scene"));
                 None
             }
         }
@@ -178,12 +178,12 @@ impl Builder<'_> {
             Integrator::Rk4 => Some(|step| Method::Rk4 { step }),
         };
         if stepping.is_none() && table.step.is_some() {
-            let problem = Problem::error("`step` is for a stepping method");
-            self.refuse(path!["method", "step"], problem.help("stepping: `euler`, `semi-implicit-euler`, `rk4`"));
+            let problem = Problem::new("`step` is for a stepping method");
+            self.refuse(at!["method", "step"], problem.help("stepping: `euler`, `semi-implicit-euler`, `rk4`"));
         }
         if table.integrator != Integrator::Adaptive && table.tolerance.is_some() {
-            let problem = Problem::error("`tolerance` is for the integrator `adaptive`");
-            self.refuse(path!["method", "tolerance"], problem);
+            let problem = Problem::new("`tolerance` is for the integrator `adaptive`");
+            self.refuse(at!["method", "tolerance"], problem);
         }
         let key = if stepping.is_some() { "step" } else { "tolerance" };
         let value = match table.integrator {
@@ -192,13 +192,13 @@ impl Builder<'_> {
             _ => table.step,
         };
         let Some(value) = value else {
-            let problem = Problem::error(format!("this integrator needs `{key}`"));
+            let problem = Problem::new(format!("this integrator needs `{key}`"));
             let help = if stepping.is_some() { "such as step = 0.01, in s" } else { "such as tolerance = 1e-9" };
-            self.refuse(path!["method", "integrator"], problem.help(help));
+            self.refuse(at!["method", "integrator"], problem.help(help));
             return None;
         };
         if !(value.is_finite() && value > 0.0) {
-            self.refuse(path!["method", key], Problem::error(format!("{key} is {value:?}, but must be finite and > 0")));
+            self.refuse(at!["method", key], Problem::new(format!("{key} is {value:?}, but must be finite and > 0")));
             return None;
         }
         Some(stepping.map_or(Method::Adaptive { tolerance: value }, |make| make(value)))

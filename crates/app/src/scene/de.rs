@@ -56,11 +56,11 @@ impl std::error::Error for Error {}
 
 impl de::Error for Error {
     fn custom<T: fmt::Display>(message: T) -> Self {
-        Self::new(Problem::error(message.to_string()))
+        Self::new(Problem::new(message.to_string()))
     }
 
     fn invalid_type(found: Unexpected<'_>, expected: &dyn Expected) -> Self {
-        Self::new(Problem::error(format!("expected {}, found {}", in_words(expected), found_in_words(&found))))
+        Self::new(Problem::new(format!("expected {}, found {}", in_words(expected), found_in_words(&found))))
     }
 
     fn invalid_value(found: Unexpected<'_>, expected: &dyn Expected) -> Self {
@@ -68,23 +68,44 @@ impl de::Error for Error {
     }
 
     fn invalid_length(length: usize, expected: &dyn Expected) -> Self {
-        Self::new(Problem::error(format!("expected {}, found {length}", in_words(expected))))
+        Self::new(Problem::new(format!("expected {}, found {length}", in_words(expected))))
     }
 
     fn unknown_field(field: &str, expected: &'static [&'static str]) -> Self {
-        let problem = Problem::error(format!("unknown key `{field}`"));
+        let problem = Problem::new(format!("unknown key `{field}`"));
         let problem = problem.help(choose(field, "valid keys here", expected.iter().copied()));
         Self { problem, unknown_key: true }
     }
 
     fn unknown_variant(variant: &str, expected: &'static [&'static str]) -> Self {
-        let problem = Problem::error(format!("unknown choice `{variant}`"));
+        let problem = Problem::new(format!("unknown choice `{variant}`"));
         Self::new(problem.help(choose(variant, "valid here", expected.iter().copied())))
     }
 
     fn missing_field(field: &'static str) -> Self {
-        Self::new(Problem::error(format!("the key `{field}` is missing")))
+        let problem = Problem::new(format!("the key `{field}` is missing"));
+        Self::new(match example(field) {
+            Some(example) => problem.help(format!("add it, such as {example}")),
+            None => problem,
+        })
     }
+}
+
+/// How a key that must be there may look.
+fn example(field: &str) -> Option<&'static str> {
+    Some(match field {
+        "version" => "version = 1",
+        "duration" => "duration = 3.0, in s",
+        "restitution" => "restitution = 0.75, between 0 and 1",
+        "name" => "name = \"floor\"",
+        "shape" => "shape = { plane = { point = [0, 0, 0], normal = [0, 0, 1] } }",
+        "file" => "file = \"hill.obj\"",
+        "position" => "position = [0, 0, 1], in m",
+        "count" => "count = [10, 10, 1]",
+        "step" => "step = [1, 1, 1], in m",
+        "integrator" => "integrator = \"exact\"",
+        _ => return None,
+    })
 }
 
 /// What serde expects, in the words of the scene file.
@@ -147,7 +168,7 @@ impl<'de> de::Deserializer<'de> for &'de Node {
             Value::Table(entries) => match entries.as_slice() {
                 [entry] => visitor.visit_enum(Choice { entry }),
                 _ => Err(Error::new(
-                    Problem::error(format!("expected exactly one key, found {}", entries.len()))
+                    Problem::new(format!("expected exactly one key, found {}", entries.len()))
                         .help(choose("", "one of", variants.iter().copied())),
                 )),
             },
@@ -178,7 +199,7 @@ fn read_array<'de, V: Visitor<'de>>(items: &'de [Node], visitor: V) -> Result<V:
     let value = visitor.visit_seq(&mut access)?;
     match access.rest.len() {
         0 => Ok(value),
-        _ => Err(Error::new(Problem::error(format!("expected {expected}, found {}", items.len())))),
+        _ => Err(Error::new(Problem::new(format!("expected {expected}, found {}", items.len())))),
     }
 }
 
@@ -234,7 +255,7 @@ impl<'de> VariantAccess<'de> for &'de Node {
     type Error = Error;
 
     fn unit_variant(self) -> Result<(), Error> {
-        Err(Error::new(Problem::error("this choice is a plain string, without a value")).at(&self.span))
+        Err(Error::new(Problem::new("this choice is a plain string, without a value")).at(&self.span))
     }
 
     fn newtype_variant_seed<T: DeserializeSeed<'de>>(self, seed: T) -> Result<T::Value, Error> {

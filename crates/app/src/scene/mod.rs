@@ -14,7 +14,7 @@ use carom_dynamics::error::SceneError;
 use carom_dynamics::scene::Scene;
 use file::SceneFile;
 use parse::Notation;
-use problem::{Problem, Severity};
+use problem::Problem;
 use std::path::Path;
 use tree::{Node, Step};
 
@@ -50,15 +50,13 @@ pub struct Findings {
 }
 
 impl Findings {
-    /// How many findings there are of this severity.
-    pub fn count(&self, severity: Severity) -> usize {
-        self.problems.iter().filter(|p| p.severity() == severity).count()
-    }
-
-    /// The findings one after the other, in the order of the file.
+    /// The findings one after the other, in the order of the file, and how many there are.
     pub fn render(&self, styled: bool) -> String {
-        let rendered: Vec<String> = self.problems.iter().map(|p| p.render(&self.path, &self.text, styled)).collect();
-        rendered.join("\n\n")
+        let mut parts: Vec<String> = self.problems.iter().map(|p| p.render(&self.path, &self.text, styled)).collect();
+        if let n @ 2.. = parts.len() {
+            parts.push(format!("{}: {n} errors", self.path));
+        }
+        parts.join("\n\n")
     }
 }
 
@@ -94,7 +92,7 @@ pub fn load(path: &Path, balls: Option<&Path>) -> Result<Loaded, AppError> {
     };
     let fail = |text: String, problems: Vec<Problem>| Err(AppError::Scene(findings(&shown, text, problems)));
     if let Some(at) = broken {
-        return fail(text, vec![Problem::error("the file is not UTF-8 text").at(at..at)]);
+        return fail(text, vec![Problem::new("the file is not UTF-8 text").at(at..at)]);
     }
     let tree = match parse::parse(&text, notation) {
         Ok(tree) => tree,
@@ -125,7 +123,7 @@ fn structure(tree: &Node) -> Result<SceneFile, Vec<Problem>> {
     let non_finite = tree.non_finite();
     let mut problems: Vec<Problem> = non_finite
         .into_iter()
-        .map(|(span, x)| Problem::error(format!("{x} is not a finite number")).at(span))
+        .map(|(span, x)| Problem::new(format!("{x} is not a finite number")).at(span))
         .collect();
     match de::from_node(tree.clone()) {
         Ok(file) if problems.is_empty() => Ok(file),
@@ -145,7 +143,7 @@ fn findings(path: &str, text: String, mut problems: Vec<Problem>) -> Findings {
 impl Loaded {
     /// The error that a fault found in the whole scene makes, told at its place in the file.
     pub fn refuse(&self, error: &SceneError) -> AppError {
-        let problem = Problem::error(error.to_string());
+        let problem = Problem::new(error.to_string());
         let mut path: Vec<Step<'_>> = Vec::new();
         match error {
             SceneError::NoBalls => {

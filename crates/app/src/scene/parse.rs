@@ -24,7 +24,7 @@ pub fn parse(text: &str, notation: Notation) -> Result<Node, Problem> {
 fn parse_toml(text: &str) -> Result<Node, Problem> {
     let table = DeTable::parse(text).map_err(|e| {
         let at = e.span().unwrap_or(0..0);
-        Problem::error(format!("not valid TOML: {}", e.message().trim_end())).at(at)
+        Problem::new(format!("not valid TOML: {}", e.message().trim_end())).at(at)
     })?;
     let span = table.span();
     Ok(Node { span, value: toml_table(table.into_inner()) })
@@ -76,10 +76,10 @@ fn parse_json(text: &str) -> Result<Node, Problem> {
         allow_extended_string_escapes: false,
     };
     let parsed = jsonc_parser::parse_to_ast(text, &Default::default(), &strict)
-        .map_err(|e| Problem::error(format!("not valid JSON: {}", e.kind())).at(e.range().start..e.range().end))?;
+        .map_err(|e| Problem::new(format!("not valid JSON: {}", e.kind())).at(e.range().start..e.range().end))?;
     match parsed.value {
         Some(value) => json_node(value),
-        None => Err(Problem::error("the file is empty").help("a scene is a JSON object with the keys of `carom schema`")),
+        None => Err(Problem::new("the file is empty").help("a scene is a JSON object with the keys of `carom schema`")),
     }
 }
 
@@ -101,7 +101,7 @@ fn json_node(value: ast::Value<'_>) -> Result<Node, Problem> {
                 let key_span = range.start..range.end;
                 let key = property.name.into_string();
                 if entries.iter().any(|e| e.key == key) {
-                    return Err(Problem::error(format!("the key `{key}` is given twice")).at(key_span));
+                    return Err(Problem::new(format!("the key `{key}` is given twice")).at(key_span));
                 }
                 entries.push(Entry { key, key_span, node: json_node(property.value)? });
             }

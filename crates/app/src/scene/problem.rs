@@ -6,31 +6,26 @@ use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 /// How bad a finding is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Severity {
-    /// The scene cannot be simulated.
+    /// It must be mended.
     Error,
-    /// It can, but something in it is probably not meant.
+    /// It is allowed, but probably not meant.
     Warning,
+    /// It is good to know.
+    Note,
 }
 
-/// One finding in a scene file.
+/// Something in a scene file that keeps it from being simulated.
 #[derive(Debug, Clone)]
 pub struct Problem {
-    severity: Severity,
     message: String,
     span: Option<Span>,
-    notes: Vec<String>,
     help: Option<String>,
 }
 
 impl Problem {
-    /// A finding that keeps the scene from being simulated.
-    pub fn error(message: impl Into<String>) -> Self {
-        Self { severity: Severity::Error, message: message.into(), span: None, notes: Vec::new(), help: None }
-    }
-
-    /// A finding that does not.
-    pub fn warning(message: impl Into<String>) -> Self {
-        Self { severity: Severity::Warning, ..Self::error(message) }
+    /// What is wrong, in a sentence without its full stop.
+    pub fn new(message: impl Into<String>) -> Self {
+        Self { message: message.into(), span: None, help: None }
     }
 
     /// Where in the text; the innermost place that is told stays.
@@ -45,16 +40,6 @@ impl Problem {
         self
     }
 
-    /// A detail.
-    pub fn note(mut self, note: impl Into<String>) -> Self {
-        self.notes.push(note.into());
-        self
-    }
-
-    pub fn severity(&self) -> Severity {
-        self.severity
-    }
-
     pub fn message(&self) -> &str {
         &self.message
     }
@@ -65,16 +50,9 @@ impl Problem {
 
     /// Shows the finding with its source line: file, line, column, a caret, and what would be valid.
     pub fn render(&self, path: &str, text: &str, styled: bool) -> String {
-        let level = match self.severity {
-            Severity::Error => Level::ERROR,
-            Severity::Warning => Level::WARNING,
-        };
         let span = clip(text, self.span.clone().unwrap_or(0..0));
         let snippet = Snippet::source(text).path(path).annotation(AnnotationKind::Primary.span(span));
-        let mut group = level.primary_title(self.message.as_str()).element(snippet);
-        for note in &self.notes {
-            group = group.element(Level::NOTE.message(note.as_str()));
-        }
+        let mut group = Level::ERROR.primary_title(self.message.as_str()).element(snippet);
         if let Some(help) = &self.help {
             group = group.element(Level::HELP.message(help.as_str()));
         }
@@ -82,11 +60,12 @@ impl Problem {
     }
 }
 
-/// Shows an error or a warning that has no place in a text.
+/// Shows what has no place in a text.
 pub fn render_plain(severity: Severity, message: &str, help: Option<&str>, styled: bool) -> String {
     let level = match severity {
         Severity::Error => Level::ERROR,
         Severity::Warning => Level::WARNING,
+        Severity::Note => Level::NOTE,
     };
     let mut groups = vec![Group::with_title(level.primary_title(message))];
     if let Some(help) = help {
@@ -114,8 +93,8 @@ fn clip(text: &str, span: Span) -> Span {
     start..floor(span.end).clamp(start, line_end)
 }
 
-/// ` did you mean ...?` for a mistyped `word`, if one of `known` is near enough.
-pub fn suggestion<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+/// The one of `known` that a mistyped `word` probably means, if one is near enough.
+fn suggestion<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     known
         .into_iter()
         .map(|k| (strsim::damerau_levenshtein(&word.to_lowercase(), &k.to_lowercase()), k))

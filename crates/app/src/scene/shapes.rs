@@ -1,6 +1,6 @@
 //! The surfaces of a scene file: names, materials and shapes.
 
-use super::build::{Builder, path};
+use super::build::{Builder, at};
 use super::file::{MeshTable, PlaneTable, ShapeTable, SurfaceTable};
 use super::problem::{Problem, choose};
 use crate::mesh_file;
@@ -23,8 +23,8 @@ pub fn surfaces(
     let mut surfaces = Vec::with_capacity(tables.len());
     for (i, table) in tables.iter().enumerate() {
         if let Some(first) = tables[..i].iter().position(|t| t.name == table.name) {
-            let problem = Problem::error(format!("the name {:?} is taken by surface {first} already", table.name));
-            builder.refuse(path!["surfaces", i, "name"], problem.help("give each surface a name of its own"));
+            let problem = Problem::new(format!("the name {:?} is taken by surface {first} already", table.name));
+            builder.refuse(at!["surfaces", i, "name"], problem.help("give each surface a name of its own"));
         }
         let material = material(builder, i, table, materials);
         let shape = match &table.shape {
@@ -48,14 +48,14 @@ fn material(
     let names = || materials.keys().map(String::as_str);
     match &table.material {
         None => {
-            let problem = Problem::error(format!("the surface {:?} has no material", table.name));
+            let problem = Problem::new(format!("the surface {:?} has no material", table.name));
             let help = choose("", "add `material`, one of the scene's", names());
-            builder.refuse(path!["surfaces", i, "name"], problem.help(help));
+            builder.refuse(at!["surfaces", i, "name"], problem.help(help));
             None
         }
         Some(name) => materials.get(name).copied().unwrap_or_else(|| {
-            let problem = Problem::error(format!("unknown material {name:?}"));
-            builder.refuse(path!["surfaces", i, "material"], problem.help(choose(name, "the scene's materials", names())));
+            let problem = Problem::new(format!("unknown material {name:?}"));
+            builder.refuse(at!["surfaces", i, "material"], problem.help(choose(name, "the scene's materials", names())));
             None
         }),
     }
@@ -68,15 +68,15 @@ fn plane_shape(builder: &mut Builder<'_>, i: usize, table: &PlaneTable) -> Optio
         }
         (None, None, Some([a, b, c, d])) => ("coefficients", Plane::from_coefficients(a, b, c, d)),
         _ => {
-            let problem = Problem::error("a plane is given by `point` and `normal`, or by `coefficients` alone");
-            builder.refuse(path!["surfaces", i, "shape", "plane"], problem);
+            let problem = Problem::new("a plane is given by `point` and `normal`, or by `coefficients` alone");
+            builder.refuse(at!["surfaces", i, "shape", "plane"], problem);
             return None;
         }
     };
     match plane {
         Ok(plane) => Some(Shape::Plane(plane)),
         Err(error) => {
-            builder.refuse(path!["surfaces", i, "shape", "plane", key], Problem::error(error.to_string()));
+            builder.refuse(at!["surfaces", i, "shape", "plane", key], Problem::new(error.to_string()));
             None
         }
     }
@@ -86,7 +86,7 @@ fn polygon_shape(builder: &mut Builder<'_>, i: usize, vertices: &[[f64; 3]]) -> 
     match Polygon::new(vertices.iter().copied().map(Point3::from).collect()) {
         Ok(polygon) => Some(Shape::Polygon(polygon)),
         Err(error) => {
-            builder.refuse(path!["surfaces", i, "shape", "polygon"], Problem::error(error.to_string()));
+            builder.refuse(at!["surfaces", i, "shape", "polygon"], Problem::new(error.to_string()));
             None
         }
     }
@@ -95,11 +95,11 @@ fn polygon_shape(builder: &mut Builder<'_>, i: usize, vertices: &[[f64; 3]]) -> 
 fn mesh_shape(builder: &mut Builder<'_>, i: usize, table: &MeshTable, folder: &Path) -> Option<Shape> {
     if !(table.scale.is_finite() && table.scale > 0.0) {
         let message = format!("scale is {:?}, but must be finite and > 0, in m per unit of the file", table.scale);
-        builder.refuse(path!["surfaces", i, "shape", "mesh", "scale"], Problem::error(message));
+        builder.refuse(at!["surfaces", i, "shape", "mesh", "scale"], Problem::new(message));
         return None;
     }
     let refuse = |builder: &mut Builder<'_>, message: String| {
-        builder.refuse(path!["surfaces", i, "shape", "mesh", "file"], Problem::error(message));
+        builder.refuse(at!["surfaces", i, "shape", "mesh", "file"], Problem::new(message));
         None
     };
     let mut raw = match mesh_file::read(&folder.join(&table.file)) {
