@@ -86,7 +86,12 @@ impl Bvh {
     /// Takes time n log n. Splits by the surface area heuristic over bins (Wald 2007, "On fast construction of
     /// SAH-based bounding volume hierarchies"), and by the median where that would get too deep.
     pub fn build(boxes: &[Aabb]) -> Self {
-        build::build(boxes)
+        Self::build_by(boxes.len(), |i| boxes[i])
+    }
+
+    /// The tree over `count` boxes that are computed as often as they are needed, and never stored.
+    pub(crate) fn build_by(count: usize, box_of: impl Fn(usize) -> Aabb) -> Self {
+        build::build(count, box_of)
     }
 
     /// The least box around all items, exactly.

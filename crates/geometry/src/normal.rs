@@ -65,7 +65,7 @@ fn rounded_vector_area(origin: &Point3<f64>, rest: &[Point3<f64>]) -> Option<Vec
     }
     let error = magnitude.map(|m| vector_area_bound(m, rest.len())).norm();
     let length = twice.norm();
-    if !(error <= VECTOR_AREA_BOUND * length) {
+    if error > VECTOR_AREA_BOUND * length {
         return None;
     }
     unit(&twice).map(|normal| VectorArea { normal, area: scale(scale(length / 2.0, k), k) })

@@ -78,14 +78,14 @@ impl Group {
     }
 }
 
-pub(super) fn build(boxes: &[Aabb]) -> Bvh {
-    let boxes = &boxes[..boxes.len().min(Child::MOST_ITEMS)];
+pub(super) fn build(count: usize, box_of: impl Fn(usize) -> Aabb) -> Bvh {
     // Infinite sides come in to the largest number: no finite segment can tell.
     let finite = |b: &Aabb| {
         let clamp = |c: f64| c.clamp(-f64::MAX, f64::MAX);
         Aabb::of_points(&[b.min().map(clamp), b.max().map(clamp)])
     };
-    let kept = || boxes.iter().enumerate().filter(|(_, b)| !b.is_empty()).map(|(i, b)| (i as u32, finite(b)));
+    let all = || (0..count.min(Child::MOST_ITEMS)).map(|i| (i as u32, box_of(i)));
+    let kept = || all().filter(|(_, b)| !b.is_empty()).map(|(i, b)| (i, finite(&b)));
     let bounds = kept().fold(Aabb::empty(), |all, (_, b)| all.union(&b));
     let frame = Frame::of(&bounds);
     let items = kept()
