@@ -13,6 +13,7 @@ pub mod projection;
 pub mod normal;
 pub mod plane;
 pub mod inside;
+pub mod closest;
 pub mod triangle;
 pub mod segment;
 pub mod polygon;

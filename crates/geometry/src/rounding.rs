@@ -68,6 +68,12 @@ pub(crate) fn vector_area_bound(magnitude: f64, fans: usize) -> f64 {
 /// A plain cross product loses u / sine of its length: below 2^-6 that is more than 64 u.
 pub(crate) const NEEDLE_SINE_SQUARED: f64 = 1.0 / 4096.0;
 
+/// How far the f of [`segment_hits_triangle`](crate::segment::segment_hits_triangle) may be below the exact one: 256 u.
+///
+/// A design choice: a smaller one sends more segments to rationals. Two determinants of a well-shaped query are off by some 7 u of
+/// their permanents, which are a few times the determinants; this leaves room for segments down to a tenth of a radian from the plane.
+pub const SEGMENT_FRACTION_BOUND: f64 = 256.0 * UNIT_ROUNDOFF;
+
 /// How far |n|^2, computed, of a vector that was normalised in f64 may be from 1: 10 u.
 ///
 /// Squares and sums of the normalisation give gamma(3) / 2 of the length, its root and the division u each, which is 7 u of

@@ -1,10 +1,11 @@
-//! Triangles (R47): normal, barycentric coordinates, and the closest point to a given one.
+//! Triangles (R47): normal, area, plane and barycentric coordinates.
 
+pub use crate::closest::{Closest, Feature, closest_point};
+use crate::closest::{Frame, to_unit_scale};
 use crate::error::TriangleError;
-use crate::normal::{cross_compensated, vector_area};
+use crate::normal::vector_area;
 use crate::plane::Plane;
-use crate::rounding::{NEEDLE_SINE_SQUARED, exponent, scale};
-use nalgebra::{Point3, UnitVector3, Vector3};
+use nalgebra::{Point3, UnitVector3};
 
 /// A triangle with an area: three finite vertices that do not lie on one line.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -61,164 +62,47 @@ impl Triangle {
     }
 }
 
-/// Which part of a triangle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Feature {
-    /// The inner of the triangle.
-    Face,
-    /// The edge from vertex i to vertex i + 1 (modulo 3), i in 0..3, without its ends.
-    Edge(u8),
-    /// The vertex i in 0..3.
-    Vertex(u8),
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rounding::UNIT_ROUNDOFF;
+    use nalgebra::Vector3;
 
-/// The point of a triangle closest to a given point x.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Closest {
-    /// The closest point, in the coordinates of the triangle.
-    pub point: Point3<f64>,
-    /// x - point, computed before `point` is rounded to its coordinates: its direction stays good when x is very near the triangle.
-    pub offset: Vector3<f64>,
-    /// Where on the triangle it lies. On the border between two features, rounding decides.
-    pub feature: Feature,
-}
+    #[test]
+    fn r47_zero_area_is_refused_exactly() {
+        let (a, b) = (Point3::new(0.1, 0.2, 0.3), Point3::new(1.1, -0.4, 0.7));
+        assert!(matches!(Triangle::new([a, b, a]), Err(TriangleError::ZeroArea { .. })));
+        let third = |k: f64| Point3::new(k, k, k);
+        assert!(matches!(Triangle::new([third(0.1), third(0.3), third(0.7)]), Err(TriangleError::ZeroArea { .. })));
+        let sliver = [third(0.1), third(0.3), Point3::new(0.7, 0.7, 0.7f64.next_up())];
+        assert!(Triangle::new(sliver).is_ok());
+        let bad = Point3::new(0.0, f64::NAN, 0.0);
+        assert!(matches!(Triangle::new([a, bad, b]), Err(TriangleError::NotFinite { vertex: 1, .. })));
+    }
 
-/// The point of the triangle closest to `x`.
-///
-/// Any finite triangle will do: one without an area is the segment or the point that it covers. The answer is finite if the differences
-/// of the coordinates are. Accuracy: a few u of the largest distance between `x` and a vertex, for needles as well, and u of the
-/// coordinates of `point`; the offset is orthogonal to the face or edge to a few u *of itself*. Voronoi regions as in Ericson, Real-Time
-/// Collision Detection (2005), section 5.1.5, from the vertex opposite to the longest edge.
-pub fn closest_point(triangle: &[Point3<f64>; 3], x: &Point3<f64>) -> Closest {
-    match to_unit_scale(triangle, x) {
-        None => closest_in_range(triangle, x),
-        Some((triangle_scaled, x_scaled, k)) => {
-            let closest = closest_in_range(&triangle_scaled, &x_scaled);
-            let offset = closest.offset.map(|c| scale(c, k));
-            let point = match closest.feature {
-                Feature::Vertex(i) => triangle[usize::from(i)],
-                _ => x - offset,
-            };
-            Closest { point, offset, ..closest }
+    #[test]
+    fn r47_normal_area_and_plane_of_a_known_triangle() {
+        let t = Triangle::new([Point3::new(1.0, 0.0, 2.0), Point3::new(4.0, 0.0, 2.0), Point3::new(1.0, 4.0, 2.0)])
+            .unwrap();
+        assert_eq!(t.normal().into_inner(), Vector3::z());
+        assert_eq!(t.area(), 6.0);
+        assert_eq!(t.plane().signed_distance(&Point3::new(9.0, 9.0, 5.0)), 3.0);
+    }
+
+    #[test]
+    fn r47_barycentric_is_the_ratio_of_the_r44_determinants() {
+        use crate::inside::edge_determinant;
+        let t = Triangle::new([Point3::new(0.3, -1.0, 0.5), Point3::new(2.0, 0.25, 0.5), Point3::new(-0.5, 3.0, 0.5)])
+            .unwrap();
+        let v = t.vertices().map(|p| p.xy());
+        for x in [Point3::new(0.5, 0.5, 0.5), Point3::new(1.0, 1.0, 0.5), Point3::new(-3.0, 1.0, 7.0)] {
+            let w = t.barycentric(&x);
+            let whole = edge_determinant(&v[0], &v[1], &v[2]);
+            for i in 0..3 {
+                let ratio = edge_determinant(&v[(i + 1) % 3], &v[(i + 2) % 3], &x.xy()) / whole;
+                assert!((w[i] - ratio).abs() <= 32.0 * UNIT_ROUNDOFF * w[i].abs().max(1.0), "{} against {ratio}", w[i]);
+            }
+            assert!((w.iter().sum::<f64>() - 1.0).abs() <= 32.0 * UNIT_ROUNDOFF);
         }
-    }
-}
-
-/// Exponents of coordinate differences for which products of four neither overflow nor lose what matters.
-const DIRECT_RANGE: std::ops::Range<i32> = -200..250;
-
-/// The triangle and the point relative to the first vertex, scaled by 2^-k to a size of about 1; none if there is no need.
-fn to_unit_scale(triangle: &[Point3<f64>; 3], x: &Point3<f64>) -> Option<([Point3<f64>; 3], Point3<f64>, i32)> {
-    let origin = triangle[0];
-    let edges = (triangle[1] - origin).amax().max((triangle[2] - origin).amax());
-    let most = edges.max((x - origin).amax());
-    if DIRECT_RANGE.contains(&exponent(most)) && (DIRECT_RANGE.contains(&exponent(edges)) || edges == 0.0)
-        || most == 0.0
-    {
-        return None;
-    }
-    // The triangle decides: a point too far off for it is seen at the edge of the range, in its direction.
-    let k = exponent(if edges > 0.0 { edges } else { most }).max(exponent(most) - DIRECT_RANGE.end + 1);
-    let near = |p: &Point3<f64>| Point3::from((p - origin).map(|c| scale(c, -k)));
-    Some((triangle.each_ref().map(near), near(x), k))
-}
-
-/// A triangle seen from the vertex opposite to its longest edge.
-struct Frame {
-    /// Index of that vertex.
-    first: u8,
-    /// The vertices from there.
-    vertices: [Point3<f64>; 3],
-    /// Edges to the second and third vertex.
-    ab: Vector3<f64>,
-    ac: Vector3<f64>,
-    /// ab x ac.
-    normal: Vector3<f64>,
-}
-
-impl Frame {
-    fn new(t: &[Point3<f64>; 3]) -> Self {
-        let squares = [t[1] - t[0], t[2] - t[1], t[0] - t[2]].map(|e| e.norm_squared());
-        // Edge i runs from vertex i to i + 1 and is opposite to vertex i + 2.
-        let first = if squares[1] >= squares[0] && squares[1] >= squares[2] {
-            0
-        } else if squares[2] >= squares[0] {
-            1
-        } else {
-            2
-        };
-        let vertices = [t[first], t[(first + 1) % 3], t[(first + 2) % 3]];
-        let [a, b, c] = vertices;
-        let (ab, ac) = (b - a, c - a);
-        let mut normal = ab.cross(&ac);
-        if normal.norm_squared() < NEEDLE_SINE_SQUARED * squares[first] * squares[(first + 2) % 3] {
-            normal = cross_compensated(&a, &b, &c);
-        }
-        Self { first: first as u8, vertices, ab, ac, normal }
-    }
-
-    fn vertex(&self, i: u8) -> Feature {
-        Feature::Vertex((self.first + i) % 3)
-    }
-
-    fn edge(&self, i: u8) -> Feature {
-        Feature::Edge((self.first + i) % 3)
-    }
-}
-
-fn closest_in_range(triangle: &[Point3<f64>; 3], x: &Point3<f64>) -> Closest {
-    let frame = Frame::new(triangle);
-    let ([a, b, c], ab, ac) = (frame.vertices, frame.ab, frame.ac);
-    let at = |point: Point3<f64>, offset, feature| Closest { point, offset, feature };
-
-    let ap = x - a;
-    let (d1, d2) = (ab.dot(&ap), ac.dot(&ap));
-    if d1 <= 0.0 && d2 <= 0.0 {
-        return at(a, ap, frame.vertex(0));
-    }
-    let bp = x - b;
-    let (d3, d4) = (ab.dot(&bp), ac.dot(&bp));
-    if d3 >= 0.0 && d4 <= d3 {
-        return at(b, bp, frame.vertex(1));
-    }
-    let cp = x - c;
-    let (d5, d6) = (ab.dot(&cp), ac.dot(&cp));
-    if d6 >= 0.0 && d5 <= d6 {
-        return at(c, cp, frame.vertex(2));
-    }
-    // Triple products, not the differences of products d1 d4 - d3 d2 ... that they equal: those lose the height of a needle.
-    let n = frame.normal;
-    let inside = |p: &Vector3<f64>, q: &Vector3<f64>| n.dot(&p.cross(q));
-    let along = |origin: &Point3<f64>, p: &Vector3<f64>, edge: &Vector3<f64>, part: f64, feature| {
-        let offset = p - edge * part;
-        // Once more, for what rounding left along the edge.
-        let rest = edge.dot(&offset) / edge.norm_squared();
-        let (point, offset) = (origin + edge * (part + rest), offset - edge * rest);
-        at(point, offset, feature)
-    };
-    let (vc, vb, va) = (inside(&ab, &ap), inside(&ap, &ac), inside(&bp, &cp));
-    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 && d1 > d3 {
-        return along(&a, &ap, &ab, d1 / (d1 - d3), frame.edge(0));
-    }
-    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 && d2 > d6 {
-        return along(&a, &ap, &ac, d2 / (d2 - d6), frame.edge(2));
-    }
-    let (beyond_b, beyond_c) = (d4 - d3, d5 - d6);
-    if va <= 0.0 && beyond_b >= 0.0 && beyond_c >= 0.0 && beyond_b + beyond_c > 0.0 {
-        return along(&b, &bp, &(c - b), beyond_b / (beyond_b + beyond_c), frame.edge(1));
-    }
-    let area_squared = n.norm_squared();
-    if area_squared > 0.0 {
-        let offset = n * (n.dot(&ap) / area_squared);
-        return at(x - offset, offset, Feature::Face);
-    }
-    // No area, and rounding put x past every segment: the nearest vertex.
-    let nearer = |p: &Vector3<f64>, q: &Vector3<f64>| p.norm_squared() <= q.norm_squared();
-    if nearer(&ap, &bp) && nearer(&ap, &cp) {
-        at(a, ap, frame.vertex(0))
-    } else if nearer(&bp, &cp) {
-        at(b, bp, frame.vertex(1))
-    } else {
-        at(c, cp, frame.vertex(2))
     }
 }

@@ -1,0 +1,323 @@
+//! The point of a triangle closest to a given one, for triangles of any shape and size.
+
+use crate::normal::cross_compensated;
+use crate::rounding::{NEEDLE_SINE_SQUARED, exponent, scale};
+use nalgebra::{Point3, Vector3};
+
+/// Which part of a triangle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Feature {
+    /// The inner of the triangle.
+    Face,
+    /// The edge from vertex i to vertex i + 1 (modulo 3), i in 0..3, without its ends.
+    Edge(u8),
+    /// The vertex i in 0..3.
+    Vertex(u8),
+}
+
+/// The point of a triangle closest to a given point x.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Closest {
+    /// The closest point, in the coordinates of the triangle.
+    pub point: Point3<f64>,
+    /// x - point, computed before `point` is rounded to its coordinates: its direction stays good when x is very near the triangle.
+    pub offset: Vector3<f64>,
+    /// Where on the triangle it lies. On the border between two features, rounding decides.
+    pub feature: Feature,
+}
+
+/// The point of the triangle closest to `x`.
+///
+/// Any finite triangle will do: one without an area is the segment or the point that it covers. The answer is finite if `x` minus
+/// each vertex is. Accuracy: a few u of the largest distance between `x` and a vertex, for needles as well, and u of the
+/// coordinates of `point`; the offset is orthogonal to the face or edge to a few u *of itself*. Voronoi regions as in Ericson, Real-Time
+/// Collision Detection (2005), section 5.1.5, from the vertex opposite to the longest edge.
+pub fn closest_point(triangle: &[Point3<f64>; 3], x: &Point3<f64>) -> Closest {
+    match to_unit_scale(triangle, x) {
+        None => closest_in_range(triangle, x),
+        Some((triangle_scaled, x_scaled, k)) => {
+            let closest = closest_in_range(&triangle_scaled, &x_scaled);
+            let offset = closest.offset.map(|c| scale(c, k));
+            let point = match closest.feature {
+                Feature::Vertex(i) => triangle[usize::from(i)],
+                _ => closest.point.map(|c| scale(c, k)),
+            };
+            Closest { point, offset, ..closest }
+        }
+    }
+}
+
+/// Exponents of coordinate differences for which products of four neither overflow nor lose what matters.
+const DIRECT_RANGE: std::ops::Range<i32> = -200..250;
+
+/// The triangle and the point scaled by 2^-k to a size of about 1; none if there is no need.
+pub(crate) fn to_unit_scale(
+    triangle: &[Point3<f64>; 3],
+    x: &Point3<f64>,
+) -> Option<([Point3<f64>; 3], Point3<f64>, i32)> {
+    let origin = triangle[0];
+    let edges = (triangle[1] - origin).amax().max((triangle[2] - origin).amax());
+    let most = edges.max((x - origin).amax());
+    if DIRECT_RANGE.contains(&exponent(most)) && (DIRECT_RANGE.contains(&exponent(edges)) || edges == 0.0)
+        || most == 0.0
+    {
+        return None;
+    }
+    // The triangle decides, unless the point is so far off that the triangle looks like a point.
+    let k = exponent(if edges > 0.0 { edges } else { most }).max(exponent(most) - DIRECT_RANGE.end + 1);
+    let near = |p: &Point3<f64>| p.map(|c| scale(c, -k));
+    Some((triangle.each_ref().map(near), near(x), k))
+}
+
+/// A triangle seen from the vertex opposite to its longest edge.
+pub(crate) struct Frame {
+    /// Index of that vertex.
+    first: u8,
+    /// The vertices from there.
+    vertices: [Point3<f64>; 3],
+    /// Edges to the second and third vertex.
+    ab: Vector3<f64>,
+    ac: Vector3<f64>,
+    /// ab x ac.
+    pub(crate) normal: Vector3<f64>,
+}
+
+impl Frame {
+    pub(crate) fn new(t: &[Point3<f64>; 3]) -> Self {
+        let squares = [t[1] - t[0], t[2] - t[1], t[0] - t[2]].map(|e| e.norm_squared());
+        // Edge i runs from vertex i to i + 1 and is opposite to vertex i + 2.
+        let first = if squares[1] >= squares[0] && squares[1] >= squares[2] {
+            0
+        } else if squares[2] >= squares[0] {
+            1
+        } else {
+            2
+        };
+        let vertices = [t[first], t[(first + 1) % 3], t[(first + 2) % 3]];
+        let [a, b, c] = vertices;
+        let (ab, ac) = (b - a, c - a);
+        let mut normal = ab.cross(&ac);
+        if normal.norm_squared() < NEEDLE_SINE_SQUARED * squares[first] * squares[(first + 2) % 3] {
+            normal = cross_compensated(&a, &b, &c);
+        }
+        Self { first: first as u8, vertices, ab, ac, normal }
+    }
+
+    fn vertex(&self, i: u8) -> Feature {
+        Feature::Vertex((self.first + i) % 3)
+    }
+
+    fn edge(&self, i: u8) -> Feature {
+        Feature::Edge((self.first + i) % 3)
+    }
+}
+
+fn closest_in_range(triangle: &[Point3<f64>; 3], x: &Point3<f64>) -> Closest {
+    let frame = Frame::new(triangle);
+    let ([a, b, c], ab, ac) = (frame.vertices, frame.ab, frame.ac);
+    let at = |point: Point3<f64>, offset, feature| Closest { point, offset, feature };
+
+    let ap = x - a;
+    let (d1, d2) = (ab.dot(&ap), ac.dot(&ap));
+    if d1 <= 0.0 && d2 <= 0.0 {
+        return at(a, ap, frame.vertex(0));
+    }
+    let bp = x - b;
+    let (d3, d4) = (ab.dot(&bp), ac.dot(&bp));
+    if d3 >= 0.0 && d4 <= d3 {
+        return at(b, bp, frame.vertex(1));
+    }
+    let cp = x - c;
+    let (d5, d6) = (ab.dot(&cp), ac.dot(&cp));
+    if d6 >= 0.0 && d5 <= d6 {
+        return at(c, cp, frame.vertex(2));
+    }
+    // Triple products, not the differences of products d1 d4 - d3 d2 ... that they equal: those lose the height of a needle.
+    let n = frame.normal;
+    let inside = |p: &Vector3<f64>, q: &Vector3<f64>| n.dot(&p.cross(q));
+    let along = |origin: &Point3<f64>, p: &Vector3<f64>, edge: &Vector3<f64>, part: f64, feature| {
+        let offset = p - edge * part;
+        // Once more, for what rounding left along the edge.
+        let rest = edge.dot(&offset) / edge.norm_squared();
+        let (point, offset) = (origin + edge * (part + rest), offset - edge * rest);
+        at(point, offset, feature)
+    };
+    let (vc, vb, va) = (inside(&ab, &ap), inside(&ap, &ac), inside(&bp, &cp));
+    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 && d1 > d3 {
+        return along(&a, &ap, &ab, d1 / (d1 - d3), frame.edge(0));
+    }
+    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 && d2 > d6 {
+        return along(&a, &ap, &ac, d2 / (d2 - d6), frame.edge(2));
+    }
+    let (beyond_b, beyond_c) = (d4 - d3, d5 - d6);
+    if va <= 0.0 && beyond_b >= 0.0 && beyond_c >= 0.0 && beyond_b + beyond_c > 0.0 {
+        return along(&b, &bp, &(c - b), beyond_b / (beyond_b + beyond_c), frame.edge(1));
+    }
+    let area_squared = n.norm_squared();
+    if area_squared > 0.0 {
+        let offset = n * (n.dot(&ap) / area_squared);
+        return at(x - offset, offset, Feature::Face);
+    }
+    // No area, and rounding put x past every segment: the nearest vertex.
+    let nearer = |p: &Vector3<f64>, q: &Vector3<f64>| p.norm_squared() <= q.norm_squared();
+    if nearer(&ap, &bp) && nearer(&ap, &cp) {
+        at(a, ap, frame.vertex(0))
+    } else if nearer(&bp, &cp) {
+        at(b, bp, frame.vertex(1))
+    } else {
+        at(c, cp, frame.vertex(2))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exact::{Exact, ExactVector, cross, difference, dot, nearest};
+    use crate::rounding::UNIT_ROUNDOFF;
+    use proptest::prelude::*;
+
+    /// The squared distance from x to the triangle, exactly: the least over vertices, edges and the face.
+    fn exact_distance_squared(t: &[Point3<f64>; 3], x: &Point3<f64>) -> Exact {
+        let zero = Exact::ZERO;
+        let mut best: Option<Exact> = None;
+        let mut offer = |d: Exact| {
+            if best.as_ref().is_none_or(|b| d < *b) {
+                best = Some(d);
+            }
+        };
+        let square = |v: &ExactVector| dot(v, v);
+        for i in 0..3 {
+            let (a, b) = (&t[i], &t[(i + 1) % 3]);
+            let (p, e) = (difference(x, a), difference(b, a));
+            offer(square(&p));
+            let (along, length) = (dot(&p, &e), square(&e));
+            if along > zero && along < length {
+                offer(square(&p) - &along * &along / length);
+            }
+        }
+        let n = cross(&difference(&t[1], &t[0]), &difference(&t[2], &t[0]));
+        let within = (0..3).all(|i| {
+            let (a, b) = (&t[i], &t[(i + 1) % 3]);
+            dot(&n, &cross(&difference(b, a), &difference(x, a))) >= zero
+        });
+        if within && square(&n) > zero {
+            let d = dot(&n, &difference(x, &t[0]));
+            offer(&d * &d / square(&n));
+        }
+        best.unwrap_or(zero)
+    }
+
+    /// The error of distance and place of the closest point, in u of the largest distance between x and a vertex (and the size of coordinates).
+    fn errors(t: &[Point3<f64>; 3], x: &Point3<f64>) -> (f64, f64) {
+        let closest = closest_point(t, x);
+        assert!(
+            closest.point.iter().chain(closest.offset.iter()).all(|c| c.is_finite()),
+            "{closest:?} of {t:?} to {x:?}"
+        );
+        let want = nearest(&exact_distance_squared(t, x)).sqrt();
+        let reach = t.iter().fold(0.0, |m, v| f64::max(m, (x - v).norm()));
+        let coordinates = t.iter().fold(x.coords.amax(), |m, v| m.max(v.coords.amax()));
+        let far = (closest.offset.norm() - want).abs() / (UNIT_ROUNDOFF * reach.max(f64::MIN_POSITIVE));
+        // The point itself lies in the triangle.
+        let off = nearest(&exact_distance_squared(t, &closest.point)).sqrt();
+        (far, off / (UNIT_ROUNDOFF * (reach + coordinates).max(f64::MIN_POSITIVE)))
+    }
+
+    #[test]
+    fn closest_point_names_every_feature() {
+        let t = [Point3::new(0.0, 0.0, 0.0), Point3::new(4.0, 0.0, 0.0), Point3::new(0.0, 4.0, 0.0)];
+        for (x, feature, point) in [
+            ((1.0, 1.0, 5.0), Feature::Face, (1.0, 1.0, 0.0)),
+            ((2.0, -3.0, 1.0), Feature::Edge(0), (2.0, 0.0, 0.0)),
+            ((4.0, 4.0, -1.0), Feature::Edge(1), (2.0, 2.0, 0.0)),
+            ((-2.0, 3.0, 0.0), Feature::Edge(2), (0.0, 3.0, 0.0)),
+            ((-1.0, -1.0, 2.0), Feature::Vertex(0), (0.0, 0.0, 0.0)),
+            ((7.0, 1.0, 0.0), Feature::Vertex(1), (4.0, 0.0, 0.0)),
+            ((1.0, 9.0, 0.0), Feature::Vertex(2), (0.0, 4.0, 0.0)),
+        ] {
+            for turn in 0..3u8 {
+                for k in [-1000, -300, 0, 300, 1000] {
+                    let big = |(x, y, z): (f64, f64, f64)| Point3::new(scale(x, k), scale(y, k), scale(z, k));
+                    let turned = std::array::from_fn(|i| t[(i + usize::from(turn)) % 3].map(|c| scale(c, k)));
+                    let closest = closest_point(&turned, &big(x));
+                    let expected = match feature {
+                        Feature::Face => Feature::Face,
+                        Feature::Edge(i) => Feature::Edge((i + 3 - turn) % 3),
+                        Feature::Vertex(i) => Feature::Vertex((i + 3 - turn) % 3),
+                    };
+                    assert_eq!((closest.feature, closest.point), (expected, big(point)), "2^{k}, from vertex {turn}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn closest_point_of_triangles_without_an_area_is_that_of_their_segment() {
+        let (a, b, m) = (Point3::new(0.0, 0.0, 0.0), Point3::new(4.0, 0.0, 0.0), Point3::new(1.0, 0.0, 0.0));
+        for t in [[a, m, b], [m, a, b], [a, b, m], [a, a, b], [a, b, a], [b, a, a], [a, b, b]] {
+            let closest = closest_point(&t, &Point3::new(3.0, 2.0, 1.0));
+            assert_eq!(
+                (closest.point, closest.offset),
+                (Point3::new(3.0, 0.0, 0.0), Vector3::new(0.0, 2.0, 1.0)),
+                "{t:?}"
+            );
+            assert_eq!(closest_point(&t, &Point3::new(9.0, 2.0, 1.0)).point, b);
+            assert_eq!(closest_point(&t, &Point3::new(-9.0, 2.0, 1.0)).point, a);
+        }
+        let closest = closest_point(&[m; 3], &Point3::new(9.0, 2.0, 1.0));
+        assert_eq!((closest.point, closest.feature), (m, Feature::Vertex(0)));
+    }
+
+    #[test]
+    fn closest_point_far_beyond_the_range_of_products_stays_finite() {
+        let t = [Point3::origin(), Point3::new(1e-90, 0.0, 0.0), Point3::new(0.0, 1e-90, 0.0)];
+        for x in [Point3::new(1e-91, 1e-91, 1e90), Point3::new(1e150, 1e150, 1e-150), Point3::new(2e-91, 3e-91, 0.0)] {
+            let closest = closest_point(&t, &x);
+            assert!(closest.point.coords.amax() <= 1e-90, "{closest:?}");
+            assert!((closest.offset - x.coords).amax() <= 2e-90);
+        }
+    }
+
+    #[test]
+    fn closest_point_of_needles_keeps_its_accuracy() {
+        let mut worst = (0.0f64, 0.0f64);
+        for k in 0..60 {
+            let h = scale(1.0, -k);
+            let t =
+                [Point3::new(0.1, 0.2, 0.3), Point3::new(1.3, 0.7, -0.4), Point3::new(0.7, 0.45 + h, -0.05 - 0.3 * h)];
+            for i in -2..12 {
+                for (away, j) in [(0.5, 0), (1e-3, 1), (1e-9, 2), (h, 0), (0.3 * h, 1), (0.0, 2)] {
+                    let mut x = t[0] + (t[1] - t[0]) * (f64::from(i) / 10.0);
+                    x[j] += away;
+                    let (far, off) = errors(&t, &x);
+                    worst = (worst.0.max(far), worst.1.max(off));
+                }
+            }
+        }
+        println!("needles: distance off by {} u, point by {} u at worst", worst.0, worst.1);
+        assert!(worst.0 <= CLOSEST_BOUND && worst.1 <= CLOSEST_BOUND, "{worst:?}");
+    }
+
+    /// "A few u": what the tests hold `closest_point` to.
+    const CLOSEST_BOUND: f64 = 16.0;
+
+    fn point() -> impl Strategy<Value = Point3<f64>> {
+        let coordinate = || prop_oneof![-1.0f64..1.0, (-4i32..5).prop_map(|c| f64::from(c) / 4.0)];
+        [coordinate(), coordinate(), coordinate()].prop_map(Point3::from)
+    }
+
+    proptest! {
+        #[test]
+        fn closest_point_is_closest(t in [point(), point(), point()], x in point(), k in -900i32..900, flat in 0u32..60) {
+            let scaled = |p: Point3<f64>| Point3::new(p.x, p.y, scale(p.z, -(flat as i32))).map(|c| scale(c, k));
+            let (t, x) = (t.map(scaled), scaled(x));
+            let (far, off) = errors(&t.map(|p| p.map(|c| scale(c, -k))), &x.map(|c| scale(c, -k)));
+            prop_assert!(far <= CLOSEST_BOUND && off <= CLOSEST_BOUND, "off by {far} u, {off} u");
+            // Scaling by a power of two changes nothing.
+            let (here, there) = (closest_point(&t.map(|p| p.map(|c| scale(c, -k))), &x.map(|c| scale(c, -k))), closest_point(&t, &x));
+            prop_assert_eq!(here.feature, there.feature);
+            prop_assert_eq!(here.offset.map(|c| scale(c, k)), there.offset);
+            prop_assert_eq!(here.point.map(|c| scale(c, k)), there.point);
+        }
+    }
+}
