@@ -1,3 +1,3 @@
 //! What the cross-crate tests share.
 
-pub mod sources;
+pub mod obj;

@@ -44,8 +44,8 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// The files below `folder` (relative to the root) whose names end in one of `endings`, by path. Nothing below a folder
-/// named `target` or beginning with a dot is looked at.
+/// The files below `folder` (relative to the root) whose names end in one of `endings`, by path. Nothing is looked at below
+/// a hidden folder or one that cargo builds into.
 pub fn files(folder: &str, endings: &[&str]) -> Vec<Source> {
     let mut found = Vec::new();
     collect(&root().join(folder), folder, endings, &mut found);
@@ -65,7 +65,7 @@ fn collect(folder: &Path, path: &str, endings: &[&str], found: &mut Vec<Source>)
         let name = entry.file_name().to_string_lossy().into_owned();
         let path = if path.is_empty() { name.clone() } else { format!("{path}/{name}") };
         if entry.path().is_dir() {
-            if name != "target" && !name.starts_with('.') {
+            if !name.starts_with('.') && !entry.path().join("CACHEDIR.TAG").exists() {
                 collect(&entry.path(), &path, endings, found);
             }
         } else if endings.iter().any(|ending| name.ends_with(ending)) {

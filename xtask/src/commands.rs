@@ -1,11 +1,11 @@
 //! Whether the commands that the README shows exist.
 
-use crate::project::Project;
+use crate::project::{Carom, Project};
 use crate::{Result, TASKS};
 use std::collections::BTreeMap;
 
 /// What is wrong with the commands in a Markdown text, a sentence each.
-pub fn wrong(project: &Project, text: &str) -> Result<Vec<String>> {
+pub fn wrong(project: &Project, carom: &Carom, text: &str) -> Result<Vec<String>> {
     let mut wrong = Vec::new();
     // Each subcommand is asked once for its help.
     let mut helps = BTreeMap::new();
@@ -21,7 +21,7 @@ pub fn wrong(project: &Project, text: &str) -> Result<Vec<String>> {
                 let arguments = carom_arguments(&words);
                 let subcommand = arguments.first().copied().unwrap_or("help");
                 if !helps.contains_key(subcommand) {
-                    helps.insert(subcommand.to_owned(), help(project, subcommand)?);
+                    helps.insert(subcommand.to_owned(), help(carom, subcommand)?);
                 }
                 match &helps[subcommand] {
                     Some(help) => {
@@ -76,8 +76,8 @@ fn carom_arguments<'a>(words: &'a [&'a str]) -> &'a [&'a str] {
 }
 
 /// The help of a subcommand, if there is such a one.
-fn help(project: &Project, subcommand: &str) -> Result<Option<String>> {
-    let output = project.carom().args([subcommand, "--help"]).output()?;
+fn help(carom: &Carom, subcommand: &str) -> Result<Option<String>> {
+    let output = carom.command([subcommand, "--help"]).output()?;
     Ok(output.status.success().then(|| String::from_utf8_lossy(&output.stdout).into_owned()))
 }
 

@@ -13,6 +13,12 @@ pub struct Project {
     cargo: OsString,
 }
 
+/// The program in its release build.
+pub struct Carom {
+    program: PathBuf,
+    root: PathBuf,
+}
+
 /// A member of the workspace.
 pub struct Member {
     /// Its folder, relative to the root, with forward slashes.
@@ -53,12 +59,10 @@ impl Project {
     /// Cargo with these arguments, in the root, in surroundings that do not depend on who calls it from where.
     pub fn cargo<const N: usize>(&self, arguments: [&str; N]) -> Command {
         let mut command = Command::new(&self.cargo);
-        command.args(arguments).current_dir(&self.root).env("CARGO_TERM_COLOR", "never").env("NO_COLOR", "1");
+        command.args(arguments).current_dir(&self.root).env("CARGO_TERM_COLOR", "never");
         if env::var_os("CARGO_TARGET_DIR").is_some() {
             command.env("CARGO_TARGET_DIR", &self.target);
         }
-        // The width of a help text must not follow the terminal's.
-        command.env_remove("COLUMNS");
         // Cargo describes this task in the surroundings; the task's children are none of this package.
         for (name, _) in env::vars_os() {
             let text = name.to_string_lossy();
@@ -72,14 +76,15 @@ impl Project {
         command
     }
 
-    /// Brings the release build of `carom` up to date.
-    pub fn build_carom(&self) -> Result<()> {
-        output(&mut self.cargo(["build", "--release", "--package", "carom", "--bin", "carom"])).map(|_| ())
-    }
-
-    /// The program `carom` in its release build; cargo knows where it is.
-    pub fn carom(&self) -> Command {
-        self.cargo(["run", "--release", "--quiet", "--package", "carom", "--bin", "carom", "--"])
+    /// The program `carom`, its release build brought up to date.
+    pub fn carom(&self) -> Result<Carom> {
+        // Not by `cargo run`, which repeats the compiler's warnings among what the program says; and not by a guess at the
+        // path, which a setting of cargo can move.
+        const FORMAT: &str = "--message-format=json-render-diagnostics";
+        let build = ["build", "--release", "--package", "carom", "--bin", "carom", FORMAT];
+        let (messages, _) = output(&mut self.cargo(build))?;
+        let program = executable(&messages).ok_or("cargo did not say where it put carom")?;
+        Ok(Carom { program, root: self.root.clone() })
     }
 
     /// The scenes that come with the program, relative to the root, by name.
@@ -127,6 +132,21 @@ impl Project {
     }
 }
 
+impl Carom {
+    /// The program with these arguments, in the root. It does not see how wide the terminal is.
+    pub fn command<const N: usize>(&self, arguments: [&str; N]) -> Command {
+        let mut command = Command::new(&self.program);
+        command.args(arguments).current_dir(&self.root).env("NO_COLOR", "1").env_remove("COLUMNS");
+        command
+    }
+}
+
+/// The executable in the messages of `cargo build`, which are JSON, one a line.
+fn executable(messages: &str) -> Option<PathBuf> {
+    let (_, path) = messages.lines().rev().find_map(|line| line.split_once("\"executable\":\""))?;
+    Some(path.split('"').next()?.replace(r"\\", r"\").into())
+}
+
 /// Standard output and standard error of a command that must end well.
 pub fn output(command: &mut Command) -> Result<(String, String)> {
     // No terminal on any side: a program that asks for its width gets none.
@@ -163,6 +183,19 @@ mod tests {
     #[test]
     fn a_command_is_shown_as_typed() {
         assert_eq!(show(Command::new("/usr/bin/cargo").args(["fmt", "--all"])), "cargo fmt --all");
+    }
+
+    #[test]
+    fn the_executable_is_found_in_cargos_messages() {
+        let messages = concat!(
+            r#"{"reason":"compiler-artifact","filenames":["a.rlib"],"executable":null,"fresh":true}"#,
+            "\n",
+            r#"{"reason":"compiler-artifact","executable":"C:\\t\\carom.exe","fresh":false}"#,
+            "\n",
+            r#"{"reason":"build-finished","success":true}"#
+        );
+        assert_eq!(executable(messages), Some(PathBuf::from(r"C:\t\carom.exe")));
+        assert_eq!(executable("{}"), None);
     }
 
     #[test]

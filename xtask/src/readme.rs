@@ -1,6 +1,6 @@
 //! The generated blocks of the README: `cargo xtask readme` writes them, and `verify` compares them.
 
-use crate::project::{Project, output};
+use crate::project::{Carom, Project, output};
 use crate::{Result, blocks};
 use std::fs;
 use std::process::ExitCode;
@@ -17,9 +17,8 @@ const SMALL_JOB: &str = "crates/app/scenes/barrier-1d.toml";
 /// Writes the blocks anew and names those that changed; a block that cannot be made stays as it is.
 pub fn rewrite() -> Result<ExitCode> {
     let project = Project::find()?;
-    project.build_carom()?;
     let old = project.read(PATH)?;
-    let (new, errors) = fresh(&project, &old)?;
+    let (new, errors) = fresh(&project, &project.carom()?, &old)?;
     for name in differing(&old, &new)? {
         println!("{PATH}: block `{name}` is new");
     }
@@ -33,9 +32,9 @@ pub fn rewrite() -> Result<ExitCode> {
 }
 
 /// What is wrong with the blocks, a sentence each; then what the README would be.
-pub fn stale(project: &Project) -> Result<Vec<String>> {
+pub fn stale(project: &Project, carom: &Carom) -> Result<Vec<String>> {
     let old = project.read(PATH)?;
-    let (new, mut sentences) = fresh(project, &old)?;
+    let (new, mut sentences) = fresh(project, carom, &old)?;
     let sentence = |name| format!("{PATH}: block `{name}` is stale; `cargo xtask readme` writes it anew");
     sentences.extend(differing(&old, &new)?.into_iter().map(sentence));
     if new != old {
@@ -45,10 +44,10 @@ pub fn stale(project: &Project) -> Result<Vec<String>> {
 }
 
 /// The text with its blocks as they would be if written now, and why some could not be.
-fn fresh(project: &Project, old: &str) -> Result<(String, Vec<String>)> {
+fn fresh(project: &Project, carom: &Carom, old: &str) -> Result<(String, Vec<String>)> {
     let mut errors = Vec::new();
     let new = blocks::replace(old, |name, body| {
-        make(project, name).unwrap_or_else(|error| {
+        make(project, carom, name).unwrap_or_else(|error| {
             errors.push(format!("{PATH}: block `{name}`: {error}"));
             body.to_owned()
         })
@@ -63,11 +62,11 @@ fn differing<'a>(old: &'a str, new: &str) -> Result<Vec<&'a str>> {
 }
 
 /// What belongs into the block of this name.
-fn make(project: &Project, name: &str) -> Result<String> {
+fn make(project: &Project, carom: &Carom, name: &str) -> Result<String> {
     match name.split_once(' ').unwrap_or((name, "")) {
-        ("main-job", "") => main_job(project),
-        ("help", "") => Ok(fenced("text", &output(project.carom().arg("--help"))?.0)),
-        ("outputs", "") => outputs(project),
+        ("main-job", "") => main_job(carom),
+        ("help", "") => Ok(fenced("text", &output(&mut carom.command(["--help"]))?.0)),
+        ("outputs", "") => outputs(carom),
         ("crates", "") => crates(project),
         ("example", package) => example(project, package),
         ("file", path) => Ok(fenced(path.rsplit('.').next().unwrap_or_default(), &project.read(path)?)),
@@ -76,20 +75,25 @@ fn make(project: &Project, name: &str) -> Result<String> {
 }
 
 /// The main job and what it says, without what another machine or hour would say differently.
-fn main_job(project: &Project) -> Result<String> {
+fn main_job(carom: &Carom) -> Result<String> {
     // The events go where nobody keeps them.
-    let summary = output(project.carom().args(["run", MAIN_JOB, "--events", "-"]))?.1;
-    let same_everywhere: Vec<&str> = summary.lines().filter(|line| !line.contains("wall")).collect();
-    Ok(fenced(
-        "console",
-        &format!("$ cargo run --release -- run {MAIN_JOB} --events events.csv\n{}", same_everywhere.join("\n")),
-    ))
+    let (_, summary) = output(&mut carom.command(["run", MAIN_JOB, "--events", "-"]))?;
+    let summary = without_wall_time(&summary).ok_or("the summary no longer says how long the run took")?;
+    Ok(fenced("console", &format!("$ cargo run --release -- run {MAIN_JOB} --events events.csv\n{summary}")))
+}
+
+/// A summary without the end of the line that says how long the run took: `, 1.234 s on the clock`.
+fn without_wall_time(summary: &str) -> Option<String> {
+    const END: &str = " s on the clock";
+    let line = summary.lines().find(|line| line.ends_with(END))?;
+    let (simulated, _) = line.rsplit_once(", ")?;
+    Some(summary.replace(line, simulated))
 }
 
 /// The files a run writes, with the columns it really writes.
-fn outputs(project: &Project) -> Result<String> {
+fn outputs(carom: &Carom) -> Result<String> {
     let columns = |option: &str| -> Result<String> {
-        let (text, _) = output(project.carom().args(["run", SMALL_JOB, option, "-"]))?;
+        let (text, _) = output(&mut carom.command(["run", SMALL_JOB, option, "-"]))?;
         Ok(text.lines().next().unwrap_or_default().replace(',', ", "))
     };
     let mut table = "| option | one line for each | columns |\n|---|---|---|\n".to_owned();
@@ -147,6 +151,13 @@ mod tests {
         let source = "//! A crate.\n//!\n//! ```\n//! let x = 1;\n//! # hidden();\n//!\n//! assert_eq!(x, 1);\n//! ```\n//! ```\n//! no\n//! ```\n";
         assert_eq!(first_example(source).as_deref(), Some("let x = 1;\n\nassert_eq!(x, 1);"));
         assert_eq!(first_example("//! No code.\nfn f() {}\n"), None);
+    }
+
+    #[test]
+    fn wall_time_is_cut_off_and_missed_if_not_there() {
+        let summary = "balls     1\ntime      3 s simulated, 0.012 s on the clock\n";
+        assert_eq!(without_wall_time(summary).as_deref(), Some("balls     1\ntime      3 s simulated\n"));
+        assert_eq!(without_wall_time("balls     1\n"), None);
     }
 
     #[test]

@@ -55,7 +55,7 @@ fn docs(project: &Project, log: &mut Log) -> Result<bool> {
 
 fn snapshots(project: &Project, log: &mut Log) -> Result<bool> {
     let mut waiting = Vec::new();
-    find_waiting(project.root(), project.target(), &mut waiting)?;
+    find_waiting(project.root(), &mut waiting)?;
     waiting.sort();
     for path in &waiting {
         let path = path.strip_prefix(project.root()).unwrap_or(path);
@@ -64,14 +64,15 @@ fn snapshots(project: &Project, log: &mut Log) -> Result<bool> {
     Ok(waiting.is_empty())
 }
 
-fn find_waiting(folder: &Path, target: &Path, found: &mut Vec<PathBuf>) -> io::Result<()> {
+fn find_waiting(folder: &Path, found: &mut Vec<PathBuf>) -> io::Result<()> {
     for entry in fs::read_dir(folder)? {
         let entry = entry?;
         let (path, name) = (entry.path(), entry.file_name());
         let name = name.to_string_lossy();
         if entry.file_type()?.is_dir() {
-            if path != target && name != ".git" && name != "target" {
-                find_waiting(&path, target, found)?;
+            // Cargo marks what it builds into.
+            if !name.starts_with('.') && !path.join("CACHEDIR.TAG").exists() {
+                find_waiting(&path, found)?;
             }
         } else if name.ends_with(".snap.new") || name.ends_with(".pending-snap") {
             found.push(path);
@@ -81,19 +82,19 @@ fn find_waiting(folder: &Path, target: &Path, found: &mut Vec<PathBuf>) -> io::R
 }
 
 fn scenes(project: &Project, log: &mut Log) -> Result<bool> {
-    project.build_carom()?;
+    let carom = project.carom()?;
     let mut passed = true;
     for scene in project.scenes()? {
-        passed &= log.run(project.carom().args(["check", &scene]))?;
-        passed &= log.run(project.carom().args(["run", &scene]))?;
+        passed &= log.run(&mut carom.command(["check", &scene]))?;
+        passed &= log.run(&mut carom.command(["run", &scene]))?;
     }
     Ok(passed)
 }
 
 fn readme(project: &Project, log: &mut Log) -> Result<bool> {
-    project.build_carom()?;
-    let mut wrong = commands::wrong(project, &project.read(readme::PATH)?)?;
-    wrong.extend(readme::stale(project)?);
+    let carom = project.carom()?;
+    let mut wrong = commands::wrong(project, &carom, &project.read(readme::PATH)?)?;
+    wrong.extend(readme::stale(project, &carom)?);
     for sentence in &wrong {
         log.line(sentence)?;
     }

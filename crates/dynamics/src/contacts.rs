@@ -19,6 +19,8 @@ pub struct Contact {
     pub normal: Vector3<f64>,
     /// n.v in m/s: negative closing, positive separating, 0 in lasting contact.
     pub rate: f64,
+    /// Whether the ball stays in contact and moves along it.
+    pub lasting: bool,
 }
 
 /// The contacts of one instant, in an order that does not depend on the order of the surfaces.

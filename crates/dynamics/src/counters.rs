@@ -1,5 +1,7 @@
 //! Work counts: deterministic, unlike time.
 
+use carom_geometry::sweep::Work;
+
 /// What a run evaluated. Counts add up over balls and do not depend on the machine or the number of threads.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 #[non_exhaustive]
@@ -30,6 +32,15 @@ pub struct Counters {
     pub corrections: u64,
     /// Steps halved because a hop was too short for them.
     pub halvings: u64,
+}
+
+impl Counters {
+    /// Adds what a query of a mesh looked at.
+    pub(crate) fn add(&mut self, work: &Work) {
+        self.nodes += work.nodes;
+        self.triangles += work.triangles;
+        self.rounds += work.rounds;
+    }
 }
 
 impl std::ops::AddAssign for Counters {

@@ -120,7 +120,7 @@ mod tests {
     }
 
     fn contacts(v: &Vector3<f64>, normals: &[Vector3<f64>]) -> Vec<Contact> {
-        normals.iter().map(|n| Contact { surface: 0, site: None, normal: *n, rate: n.dot(v) }).collect()
+        normals.iter().map(|n| Contact { surface: 0, site: None, normal: *n, rate: n.dot(v), lasting: false }).collect()
     }
 
     fn answer(v: Vector3<f64>, normals: &[Vector3<f64>], m: Material) -> Vector3<f64> {

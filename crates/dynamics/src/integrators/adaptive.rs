@@ -100,6 +100,7 @@ impl Adaptive {
             velocity: [v, v_terms[0], v_terms[1], v_terms[2], v_terms[3]],
             seconds: h,
             to: 1.0,
+            exact: false,
         };
         (step, error)
     }

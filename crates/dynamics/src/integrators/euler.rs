@@ -23,6 +23,7 @@ fn straight(state: &State, along: Vector3<f64>, a: Vector3<f64>, h: f64) -> Step
         velocity: [state.velocity, a * h, zero, zero, zero],
         seconds: h,
         to: 1.0,
+        exact: false,
     }
 }
 

@@ -17,6 +17,7 @@ pub fn step(state: &State, a: Vector3<f64>, remaining: f64) -> Step {
         velocity: [state.velocity, a * h, zero, zero, zero],
         seconds: h,
         to: remaining / h,
+        exact: true,
     }
 }
 

@@ -6,6 +6,9 @@ pub mod exact;
 pub mod rk4;
 
 use crate::body::State;
+use crate::counters::Counters;
+use crate::forces::Forces;
+use adaptive::Adaptive;
 use carom_geometry::clearance::MAX_DEGREE;
 use carom_geometry::path::Path;
 use nalgebra::Vector3;
@@ -21,6 +24,56 @@ pub struct Step {
     pub seconds: f64,
     /// Where the step ends; 1 but for a flight that is exact for any length.
     pub to: f64,
+    /// Whether the velocity is the derivative of the path to the last bit: what is computed of the one is then true of the other.
+    pub exact: bool,
+}
+
+/// The methods with a fixed timestep.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stepping {
+    /// The chapter's explicit Euler.
+    Euler,
+    /// Semi-implicit Euler.
+    SemiImplicitEuler,
+    /// Runge-Kutta of order 4.
+    Rk4,
+}
+
+/// A method at work on one ball.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Integrator {
+    /// Exact under constant acceleration, in steps of any length.
+    Exact,
+    /// A fixed timestep h, in s.
+    Stepping(Stepping, f64),
+    /// A step of its own choice.
+    Adaptive(Adaptive),
+}
+
+impl Integrator {
+    /// The timestep h in s, if it is fixed.
+    pub fn timestep(&self) -> Option<f64> {
+        match self {
+            Integrator::Stepping(_, h) => Some(*h),
+            Integrator::Exact | Integrator::Adaptive(_) => None,
+        }
+    }
+
+    /// The path of `timestep` seconds from `state`; the adaptive pair may give a shorter one.
+    pub fn step(&mut self, forces: &Forces, state: &State, timestep: f64, counters: &mut Counters) -> Step {
+        counters.paths += 1;
+        match self {
+            Integrator::Exact => exact::step(state, forces.acceleration(state, counters), timestep),
+            Integrator::Stepping(Stepping::Euler, _) => {
+                euler::explicit(state, forces.acceleration(state, counters), timestep)
+            }
+            Integrator::Stepping(Stepping::SemiImplicitEuler, _) => {
+                euler::semi_implicit(state, forces.acceleration(state, counters), timestep)
+            }
+            Integrator::Stepping(Stepping::Rk4, _) => rk4::step(forces, state, timestep, counters),
+            Integrator::Adaptive(pair) => pair.step(state, timestep, |s| forces.acceleration(s, counters)),
+        }
+    }
 }
 
 impl Step {

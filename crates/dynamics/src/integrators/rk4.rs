@@ -31,5 +31,6 @@ pub fn step(forces: &Forces, state: &State, h: f64, counters: &mut Counters) -> 
         velocity: [v, a1 * h, (3.0 * p - 2.0 * a1 - a_end) * h, (a1 + a_end - 2.0 * p) * h, Vector3::zeros()],
         seconds: h,
         to: 1.0,
+        exact: false,
     }
 }

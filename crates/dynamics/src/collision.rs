@@ -1,0 +1,208 @@
+//! Collision detection and determination: the earliest f over all surfaces, and what is touched there.
+
+use crate::body::State;
+use crate::contacts::{Contact, Contacts, MAX_CONTACTS};
+use crate::counters::Counters;
+use crate::integrators::Step;
+use crate::plan::Plan;
+use crate::tolerance::merge_angle_squared;
+use arrayvec::ArrayVec;
+use carom_geometry::clearance::{Clearance, Entry};
+use carom_geometry::contact::{Hold, MovingBall};
+use carom_geometry::plane::Side;
+use carom_geometry::sweep::Work;
+use nalgebra::{Point3, Vector3};
+
+/// The earliest collision of a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hit {
+    /// The slides' f, as a part of the step.
+    pub f: f64,
+    /// Index of the surface.
+    pub surface: usize,
+    /// The face of a mesh.
+    pub face: Option<u32>,
+}
+
+/// When a contact that the ball has is entered again: clearance 0 at the start, changing with its exact rate.
+#[derive(Debug, Clone, Copy)]
+pub struct Return {
+    /// For the mesh queries.
+    pub hold: Hold,
+    /// Where, and at what slope.
+    pub entry: Entry,
+}
+
+/// The returns of one step, one for each contact.
+pub type Returns = ArrayVec<Return, MAX_CONTACTS>;
+
+/// When the path of `step` returns to each of `contacts`; never to a lasting one, along which it moves.
+pub fn returns(step: &Step, contacts: &[Contact], counters: &mut Counters) -> Returns {
+    contacts
+        .iter()
+        .map(|contact| {
+            if contact.lasting {
+                return Return { hold: Hold { normal: contact.normal, until: f64::INFINITY }, entry: Entry::Never };
+            }
+            counters.clearances += 1;
+            let entry = leaving(step, contact).first_entry(0.0, step.to);
+            let until = entry.f().unwrap_or(f64::INFINITY);
+            Return { hold: Hold { normal: contact.normal, until }, entry }
+        })
+        .collect()
+}
+
+/// The clearance from a contact along the step: 0 now by definition, and its slope the contact's own rate (plus what a path that
+/// does not begin with the velocity adds).
+fn leaving(step: &Step, contact: &Contact) -> Clearance {
+    let mut c = [0.0; 5];
+    for (k, term) in step.path.terms().iter().enumerate() {
+        c[k + 1] = contact.normal.dot(term);
+    }
+    if let Some(first) = step.path.terms().first() {
+        let kick = first - step.velocity[0] * step.seconds;
+        c[1] = contact.rate * step.seconds + contact.normal.dot(&kick);
+    }
+    Clearance::new(c)
+}
+
+/// One ball among the surfaces of a plan.
+#[derive(Debug, Clone)]
+pub struct Obstacles<'a> {
+    plan: &'a Plan,
+    /// On which side of each plane the ball is: decided once, and never again.
+    sides: Vec<Side>,
+    radius: f64,
+    mesh_radius: f64,
+}
+
+impl<'a> Obstacles<'a> {
+    /// The surfaces as met by a ball of `radius` that starts in `state` with acceleration `a`.
+    pub fn new(plan: &'a Plan, radius: f64, state: &State, a: &Vector3<f64>) -> Self {
+        let side = |plane: &carom_geometry::plane::Plane| {
+            let n = plane.normal();
+            // A centre on the plane is on the side it moves to, or else on the side it is pressed from.
+            plane.side_of(&state.position).unwrap_or_else(|| {
+                let heading = n.dot(&state.velocity);
+                let heading = if heading == 0.0 { -n.dot(a) } else { heading };
+                if heading < 0.0 { Side::Negative } else { Side::Positive }
+            })
+        };
+        let sides = plan.planes.iter().map(|(_, plane)| side(plane)).collect();
+        Self { plan, sides, radius, mesh_radius: radius.max(plan.point_radius) }
+    }
+
+    /// The radius with which the ball meets the surface.
+    pub fn radius_at(&self, contact: &Contact) -> f64 {
+        if contact.site.is_some() { self.mesh_radius } else { self.radius }
+    }
+
+    /// The earliest collision of the step: over all surfaces, the smallest f at which the clearance is <= 0 and falling. Faces for
+    /// which `skip` holds are left out.
+    pub fn earliest(
+        &self,
+        step: &Step,
+        contacts: &[Contact],
+        returns: &Returns,
+        skip: impl Fn(usize, u32) -> bool,
+        counters: &mut Counters,
+    ) -> Option<Hit> {
+        let mut earliest: Option<Hit> = None;
+        for ((surface, plane), side) in self.plan.planes.iter().zip(&self.sides) {
+            let known = contacts.iter().position(|c| c.surface == *surface);
+            let entry = match known {
+                Some(i) => returns[i].entry,
+                None => {
+                    counters.clearances += 1;
+                    let gap = plane.clearance(&step.path.start(), self.radius, *side);
+                    let normal = plane.normal().into_inner() * side.sign();
+                    step.path.clearance(gap, &normal).first_entry(0.0, step.to)
+                }
+            };
+            if let Entry::At { f, .. } = entry
+                && earliest.is_none_or(|hit| f < hit.f)
+            {
+                earliest = Some(Hit { f, surface: *surface, face: None });
+            }
+        }
+        let holds: ArrayVec<Hold, MAX_CONTACTS> = returns.iter().map(|r| r.hold).collect();
+        let ball = MovingBall { path: &step.path, radius: self.mesh_radius, holds: &holds };
+        for (surface, mesh) in &self.plan.meshes {
+            let to = earliest.map_or(step.to, |hit| hit.f);
+            let mut work = Work::default();
+            let found = mesh.first_contact(&ball, to, |face| skip(*surface, face), &mut work);
+            counters.add(&work);
+            if let Some(found) = found
+                && earliest.is_none_or(|hit| found.f < hit.f)
+            {
+                earliest = Some(Hit { f: found.f, surface: *surface, face: Some(found.face) });
+            }
+        }
+        earliest
+    }
+
+    /// The contacts of a ball at `position` with `velocity`, to within `tolerance` (m), each with its rate n.v.
+    ///
+    /// Of contacts whose normals are one to within what the tolerance makes of them, the one that closes fastest stays.
+    pub fn touching(
+        &self,
+        position: &Point3<f64>,
+        velocity: &Vector3<f64>,
+        tolerance: f64,
+        counters: &mut Counters,
+    ) -> Contacts {
+        let contact = |surface, site, normal: Vector3<f64>| Contact {
+            surface,
+            site,
+            normal,
+            rate: normal.dot(velocity),
+            lasting: false,
+        };
+        let mut all: Vec<Contact> = Vec::new();
+        for ((surface, plane), side) in self.plan.planes.iter().zip(&self.sides) {
+            if plane.clearance(position, self.radius, *side) <= tolerance {
+                all.push(contact(*surface, None, plane.normal().into_inner() * side.sign()));
+            }
+        }
+        for (surface, mesh) in &self.plan.meshes {
+            let mut work = Work::default();
+            for touch in mesh.touches(position, self.mesh_radius, tolerance, &mut work) {
+                all.push(contact(*surface, Some(touch.site), touch.normal));
+            }
+            counters.add(&work);
+        }
+        let rank = |c: &Contact| (self.plan.surfaces[c.surface].rank, c.site);
+        all.sort_by(|a, b| a.rate.total_cmp(&b.rate).then_with(|| rank(a).cmp(&rank(b))));
+        let mut contacts = Contacts::new();
+        for c in all {
+            let same = |kept: &Contact| {
+                let angle = merge_angle_squared(tolerance, self.radius_at(kept).min(self.radius_at(&c)));
+                (kept.normal - c.normal).norm_squared() <= angle
+            };
+            if !contacts.is_full() && !contacts.iter().any(same) {
+                contacts.push(c);
+            }
+        }
+        contacts.sort_by_key(rank);
+        contacts
+    }
+
+    /// The distance that is left between the ball at `position` and what it is in contact with.
+    pub fn gap(&self, contact: &Contact, position: &Point3<f64>) -> Option<f64> {
+        match contact.site {
+            Some(site) => {
+                let (foot, _) = self.mesh(contact.surface)?.foot(site, position)?;
+                Some((position - foot).norm() - self.mesh_radius)
+            }
+            None => {
+                let i = self.plan.planes.iter().position(|(surface, _)| *surface == contact.surface)?;
+                Some(self.plan.planes[i].1.clearance(position, self.radius, self.sides[i]))
+            }
+        }
+    }
+
+    /// The mesh that `surface` is, if it is one.
+    pub fn mesh(&self, surface: usize) -> Option<&'a carom_geometry::mesh::Mesh> {
+        self.plan.meshes.iter().find(|(s, _)| *s == surface).map(|(_, mesh)| mesh.as_ref())
+    }
+}

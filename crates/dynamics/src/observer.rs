@@ -1,0 +1,149 @@
+//! What a simulation shows while it runs: events, and the stretches of motion between them.
+
+use crate::body::State;
+use crate::events::{Event, Motion};
+use crate::integrators::Step;
+
+/// A stretch of motion without an event inside.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Segment {
+    /// When it begins, in s.
+    pub time: f64,
+    /// Its path and velocity.
+    pub step: Step,
+    /// The f at which it ends.
+    pub to: f64,
+    /// How the ball moves in it.
+    pub motion: Motion,
+}
+
+impl Segment {
+    /// When it ends, in s.
+    pub fn end(&self) -> f64 {
+        self.time + self.step.time(self.to)
+    }
+
+    /// The state at `time`, which is brought into the segment.
+    pub fn at(&self, time: f64) -> State {
+        self.step.at(((time - self.time) / self.step.seconds).clamp(0.0, self.to))
+    }
+}
+
+/// Watches one ball.
+pub trait Observer {
+    /// Something happened.
+    fn event(&mut self, event: &Event);
+
+    /// The ball moved; segments come in order of time and leave no gap.
+    fn segment(&mut self, segment: &Segment);
+}
+
+/// A watcher that does not look.
+impl Observer for () {
+    fn event(&mut self, _: &Event) {}
+    fn segment(&mut self, _: &Segment) {}
+}
+
+/// Two watchers side by side.
+impl<A: Observer, B: Observer> Observer for (A, B) {
+    fn event(&mut self, event: &Event) {
+        self.0.event(event);
+        self.1.event(event);
+    }
+
+    fn segment(&mut self, segment: &Segment) {
+        self.0.segment(segment);
+        self.1.segment(segment);
+    }
+}
+
+/// A watcher that may be absent.
+impl<A: Observer> Observer for Option<A> {
+    fn event(&mut self, event: &Event) {
+        if let Some(observer) = self {
+            observer.event(event);
+        }
+    }
+
+    fn segment(&mut self, segment: &Segment) {
+        if let Some(observer) = self {
+            observer.segment(segment);
+        }
+    }
+}
+
+/// The whole run of a ball: its events and its motion.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Trajectory {
+    /// The events, in order of time.
+    pub events: Vec<Event>,
+    /// The motion, in order of time and without gaps.
+    pub segments: Vec<Segment>,
+}
+
+impl Observer for Trajectory {
+    fn event(&mut self, event: &Event) {
+        self.events.push(*event);
+    }
+
+    fn segment(&mut self, segment: &Segment) {
+        self.segments.push(*segment);
+    }
+}
+
+impl Trajectory {
+    /// The state and the kind of motion at `time`; none before the start and after the end.
+    pub fn at(&self, time: f64) -> Option<(State, Motion)> {
+        let after = self.segments.partition_point(|s| s.time <= time);
+        let segment = self.segments.get(after.checked_sub(1)?)?;
+        (time <= segment.end()).then(|| (segment.at(time), segment.motion))
+    }
+}
+
+/// A ball at the time of a frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Frame {
+    /// k / fps, in s.
+    pub time: f64,
+    /// Where and how fast.
+    pub state: State,
+    /// How it moves.
+    pub motion: Motion,
+}
+
+/// Samples the motion at t = k / fps. Frames are read off the stored paths and never change the run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrameSampler {
+    fps: f64,
+    duration: f64,
+    frames: Vec<Frame>,
+}
+
+impl FrameSampler {
+    /// Frames at `fps` per second, > 0, from 0 to `duration` (s), both included.
+    pub fn new(fps: f64, duration: f64) -> Self {
+        Self { fps, duration, frames: Vec::new() }
+    }
+
+    /// The frames so far.
+    pub fn frames(&self) -> &[Frame] {
+        &self.frames
+    }
+}
+
+impl Observer for FrameSampler {
+    fn event(&mut self, _: &Event) {}
+
+    fn segment(&mut self, segment: &Segment) {
+        let end = segment.end();
+        loop {
+            let time = self.frames.len() as f64 / self.fps;
+            // A frame at the time of an event shows what comes after it; the last frame has nothing after it.
+            let last = time >= self.duration && end >= self.duration;
+            if time > self.duration || (time >= end && !last) {
+                return;
+            }
+            self.frames.push(Frame { time, state: segment.at(time), motion: segment.motion });
+        }
+    }
+}

@@ -1,0 +1,211 @@
+//! What will be evaluated: decided once, before the loop, from the scene.
+
+use crate::body::{Ball, State};
+use crate::effects::Flow;
+use crate::error::{SceneError, ValueError, require};
+use crate::forces::Forces;
+use crate::integrators::adaptive::Adaptive;
+use crate::integrators::{Integrator, Stepping};
+use crate::scene::{Method, Scene};
+use crate::surface::{Material, Shape};
+use crate::tolerance::{FLIGHT_TOLERANCE, LEAST_TOLERANCE, RestThresholds, default_rest_length};
+use carom_geometry::bounds::Aabb;
+use carom_geometry::mesh::Mesh;
+use carom_geometry::plane::Plane;
+use carom_geometry::rounding::{UNIT_ROUNDOFF, point_radius};
+use nalgebra::{Point3, Vector3};
+use std::sync::Arc;
+
+/// A scene made ready: what is off is not in it.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    pub(crate) duration: f64,
+    pub(crate) constant: Vector3<f64>,
+    pub(crate) flows: Vec<Arc<dyn Flow>>,
+    pub(crate) planes: Vec<(usize, Plane)>,
+    pub(crate) meshes: Vec<(usize, Arc<Mesh>)>,
+    pub(crate) surfaces: Vec<PlannedSurface>,
+    pub(crate) balls: Vec<Ball>,
+    pub(crate) rest: RestThresholds,
+    pub(crate) method: Method,
+    pub(crate) farthest: f64,
+    pub(crate) point_radius: f64,
+}
+
+/// What the loop needs to know of a surface whatever its shape.
+#[derive(Debug, Clone)]
+pub(crate) struct PlannedSurface {
+    pub material: Material,
+    /// Place in the order of the names: ties are broken by it, not by the order of the scene.
+    pub rank: usize,
+    /// Whether its faces are numbered for the user: not for a polygon, which is one.
+    pub numbered: bool,
+}
+
+impl Plan {
+    /// Checks `scene` and decides what to evaluate.
+    ///
+    /// The method is the scene's; if it names none, the exact flight where the acceleration is constant, else the adaptive pair.
+    pub fn new(scene: &Scene) -> Result<Self, SceneError> {
+        let duration = scene.duration;
+        require("duration", duration, "finite and > 0, in s", duration.is_finite() && duration > 0.0)?;
+        if scene.balls.is_empty() {
+            return Err(SceneError::NoBalls);
+        }
+        let mut flows: Vec<Arc<dyn Flow>> = Vec::new();
+        if let Some(drag) = scene.drag {
+            if let Some(ball) = scene.balls.iter().position(|b| b.mass().is_none()) {
+                return Err(SceneError::MassMissing { ball, effect: "drag" });
+            }
+            flows.push(Arc::new(drag));
+        }
+        let method = method(scene, &flows)?;
+        let (planes, meshes) = shapes(scene);
+        let size = Size::of(scene, &planes, &meshes);
+        let least = 16.0 * UNIT_ROUNDOFF * size.farthest;
+        for (ball, b) in scene.balls.iter().enumerate() {
+            if b.radius() > 0.0 && b.radius() < least {
+                let (radius, distance) = (b.radius(), size.farthest);
+                return Err(SceneError::RadiusBelowResolution { ball, radius, least, distance });
+            }
+        }
+        let mut by_name: Vec<usize> = (0..scene.surfaces.len()).collect();
+        by_name.sort_by(|&a, &b| scene.surfaces[a].name.cmp(&scene.surfaces[b].name));
+        let mut rank = vec![0; by_name.len()];
+        by_name.iter().enumerate().for_each(|(place, &surface)| rank[surface] = place);
+        let surfaces = scene.surfaces.iter().zip(rank).map(|(surface, rank)| PlannedSurface {
+            material: surface.material,
+            rank,
+            numbered: matches!(surface.shape, Shape::Mesh(_)),
+        });
+        Ok(Self {
+            duration,
+            constant: scene.gravity.map_or(Vector3::zeros(), |g| g.acceleration()),
+            flows,
+            planes,
+            meshes,
+            surfaces: surfaces.collect(),
+            balls: scene.balls.clone(),
+            rest: scene.rest.unwrap_or(RestThresholds::Length(default_rest_length(size.extent, size.farthest))),
+            method,
+            farthest: size.farthest,
+            point_radius: point_radius(size.farthest),
+        })
+    }
+
+    /// The balls, in the order of the scene.
+    pub fn balls(&self) -> &[Ball] {
+        &self.balls
+    }
+
+    /// For how long it simulates, in s.
+    pub fn duration(&self) -> f64 {
+        self.duration
+    }
+
+    /// The method that flights are computed with.
+    pub fn method(&self) -> Method {
+        self.method
+    }
+
+    /// The thresholds of the rest test.
+    pub fn rest(&self) -> RestThresholds {
+        self.rest
+    }
+
+    /// The constant part of the acceleration, in m/s^2.
+    pub fn constant_acceleration(&self) -> Vector3<f64> {
+        self.constant
+    }
+
+    /// The box of all bounded surfaces; none if there are none, or if an infinite plane is among them.
+    pub fn bounds(&self) -> Option<Aabb> {
+        if !self.planes.is_empty() || self.meshes.is_empty() {
+            return None;
+        }
+        Some(self.meshes.iter().fold(Aabb::empty(), |sum, (_, mesh)| sum.union(mesh.bounds())))
+    }
+
+    pub(crate) fn forces<'a>(&'a self, ball: &'a Ball) -> Forces<'a> {
+        Forces { constant: self.constant, flows: &self.flows, ball }
+    }
+
+    pub(crate) fn integrator(&self) -> Integrator {
+        match self.method {
+            Method::Exact => Integrator::Exact,
+            Method::Euler { step } => Integrator::Stepping(Stepping::Euler, step),
+            Method::SemiImplicitEuler { step } => Integrator::Stepping(Stepping::SemiImplicitEuler, step),
+            Method::Rk4 { step } => Integrator::Stepping(Stepping::Rk4, step),
+            Method::Adaptive { tolerance } => Integrator::Adaptive(Adaptive::new(tolerance)),
+        }
+    }
+}
+
+fn method(scene: &Scene, flows: &[Arc<dyn Flow>]) -> Result<Method, SceneError> {
+    let method = match (scene.method, flows) {
+        (Some(Method::Exact), [flow, ..]) => return Err(SceneError::NoExactFlight { effect: flow.name() }),
+        (Some(method), _) => method,
+        (None, []) => Method::Exact,
+        (None, _) => Method::Adaptive { tolerance: FLIGHT_TOLERANCE },
+    };
+    let positive = |name, x: f64, expected| -> Result<f64, ValueError> {
+        require(name, x, expected, x.is_finite() && x > 0.0)
+    };
+    match method {
+        Method::Exact => {}
+        Method::Euler { step } | Method::SemiImplicitEuler { step } | Method::Rk4 { step } => {
+            positive("step", step, "finite and > 0, in s")?;
+        }
+        Method::Adaptive { tolerance } => {
+            let expected = "between 1e-15 and 1";
+            require("tolerance", tolerance, expected, (LEAST_TOLERANCE..=1.0).contains(&tolerance))?;
+        }
+    }
+    Ok(method)
+}
+
+/// Planes with their surfaces.
+type Planes = Vec<(usize, Plane)>;
+/// Meshes with their surfaces.
+type Meshes = Vec<(usize, Arc<Mesh>)>;
+
+fn shapes(scene: &Scene) -> (Planes, Meshes) {
+    let (mut planes, mut meshes) = (Vec::new(), Vec::new());
+    for (i, surface) in scene.surfaces.iter().enumerate() {
+        match &surface.shape {
+            Shape::Plane(plane) => planes.push((i, plane.clone())),
+            Shape::Polygon(polygon) => meshes.push((i, Arc::new(Mesh::from_polygon(polygon)))),
+            Shape::Mesh(mesh) => meshes.push((i, Arc::clone(mesh))),
+        }
+    }
+    (planes, meshes)
+}
+
+/// How large a scene is.
+struct Size {
+    /// Its size in m, wherever it is.
+    extent: f64,
+    /// Its largest |coordinate| in m.
+    farthest: f64,
+}
+
+impl Size {
+    fn of(scene: &Scene, planes: &[(usize, Plane)], meshes: &[(usize, Arc<Mesh>)]) -> Self {
+        let starts: Vec<Point3<f64>> = scene.balls.iter().map(|b| b.start().position).collect();
+        let mut bounds = Aabb::of_points(&starts);
+        for (_, mesh) in meshes {
+            bounds = bounds.union(mesh.bounds());
+        }
+        let radius = scene.balls.iter().map(Ball::radius).fold(0.0, f64::max);
+        let above = planes.iter().flat_map(|(_, plane)| starts.iter().map(|x| plane.signed_distance(x).abs()));
+        let mut extent = above.fold(bounds.extent().amax().max(radius), f64::max);
+        if extent == 0.0 {
+            // Points that start on their plane: as far as they get in the time.
+            let fastest = |s: State| s.velocity.amax() * scene.duration;
+            extent = scene.balls.iter().map(|b| fastest(b.start())).fold(0.0, f64::max);
+        }
+        let corners = bounds.min().coords.amax().max(bounds.max().coords.amax());
+        let farthest = planes.iter().map(|(_, plane)| plane.point().coords.amax()).fold(corners, f64::max);
+        Self { extent, farthest: farthest.max(extent) }
+    }
+}

@@ -1,0 +1,147 @@
+//! Motion in lasting contact: sliding on one surface, along a groove of two, or not at all.
+//!
+//! On a flat surface without friction, or where friction has nothing to turn, the path is a parabola or a straight line, exact to
+//! the point where it stops. Elsewhere (across a slope, around an edge, in wind) the constrained motion is integrated by the adaptive
+//! pair.
+
+use crate::body::State;
+use crate::contacts::Contact;
+use crate::counters::Counters;
+use crate::effects::friction::ContactFriction;
+use crate::forces::Forces;
+use crate::integrators::adaptive::Adaptive;
+use crate::integrators::{Step, exact};
+use crate::support::{Projection, project_offset};
+use crate::tolerance::{SLIDING_TOLERANCE, parallel};
+use carom_geometry::sweep::Bend;
+use nalgebra::{Point3, Vector3};
+
+/// A contact that may carry the ball.
+#[derive(Debug, Clone, Copy)]
+pub struct Carrier {
+    /// The contact.
+    pub contact: Contact,
+    /// The shape that the centre follows on it.
+    pub bend: Bend,
+    /// Its friction.
+    pub friction: ContactFriction,
+    /// The distance between it and the centre, in m.
+    pub radius: f64,
+}
+
+impl Carrier {
+    /// The unit normal at `position`.
+    fn normal(&self, position: &Point3<f64>) -> Vector3<f64> {
+        let away = match self.bend {
+            Bend::Flat => return self.contact.normal,
+            Bend::Around { point, along } => {
+                let w = position - point;
+                w - along * along.dot(&w)
+            }
+            Bend::About { point } => position - point,
+        };
+        away.try_normalize(0.0).unwrap_or(self.contact.normal)
+    }
+
+    /// The acceleration towards it, in m/s^2, that following its curve takes at `velocity`: v^2 / r across an edge.
+    fn centripetal(&self, velocity: &Vector3<f64>) -> f64 {
+        match self.bend {
+            Bend::Flat => 0.0,
+            Bend::Around { along, .. } => (velocity - along * along.dot(velocity)).norm_squared() / self.radius,
+            Bend::About { .. } => velocity.norm_squared() / self.radius,
+        }
+    }
+}
+
+/// What carries the ball, and what is left to move it.
+#[derive(Debug, Clone, Copy)]
+pub struct Balance {
+    /// The acceleration that the carriers leave, without friction, in m/s^2.
+    pub free: Vector3<f64>,
+    /// Greatest deceleration by friction, in m/s^2.
+    pub friction: f64,
+    /// Whether a carrier lets nothing slide.
+    pub sticks: bool,
+    /// The loads.
+    pub loads: Projection,
+}
+
+impl Balance {
+    /// Balances the acceleration `a` on `carriers` for a ball in `state`.
+    pub fn of(a: &Vector3<f64>, carriers: &[Carrier], state: &State) -> Self {
+        let normals: Vec<Vector3<f64>> = carriers.iter().map(|c| c.normal(&state.position)).collect();
+        let loads = project_offset(a, &normals, |i| carriers[i].centripetal(&state.velocity));
+        let (mut friction, mut sticks) = (0.0, false);
+        for (i, load) in loads.loads() {
+            match carriers[i].friction {
+                ContactFriction::Sliding(mu) => friction += mu * load,
+                ContactFriction::Sticking => sticks = true,
+            }
+        }
+        Self { free: loads.velocity, friction, sticks, loads }
+    }
+
+    /// Whether the ball, once it stands, stays: |F_t| <= mu |F_n|, compared by squares. No force rests on any surface.
+    pub fn holds(&self) -> bool {
+        self.sticks || self.free.norm_squared() <= self.friction * self.friction
+    }
+
+    /// The acceleration of a ball that moves, or begins to, along the unit vector `direction`.
+    fn sliding(&self, direction: &Vector3<f64>) -> Vector3<f64> {
+        self.free - direction * self.friction
+    }
+}
+
+/// A stretch of sliding.
+#[derive(Debug, Clone, Copy)]
+pub struct Slide {
+    /// Its path.
+    pub step: Step,
+    /// Whether the ball stands at the end of it.
+    pub stops: bool,
+}
+
+/// The motion of a ball in `state` on `carriers`, whose `balance` it is, for at most `remaining` seconds.
+pub fn slide(
+    forces: &Forces,
+    state: &State,
+    carriers: &[Carrier],
+    balance: &Balance,
+    remaining: f64,
+    counters: &mut Counters,
+) -> Slide {
+    counters.paths += 1;
+    let flat = carriers.iter().all(|c| c.bend == Bend::Flat);
+    let speed = state.velocity.norm();
+    let straight = balance.friction == 0.0 || speed == 0.0 || parallel(&balance.free, &state.velocity);
+    // Along a groove every motion is straight.
+    if forces.are_constant() && flat && (straight || balance.loads.count() > 1) {
+        let heading = if speed > 0.0 { state.velocity } else { balance.free };
+        let direction = heading.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
+        let a = balance.sliding(&direction);
+        let braking = -a.dot(&direction);
+        if speed > 0.0 && balance.friction > 0.0 && braking > 0.0 && speed / braking <= remaining {
+            let mut step = exact::step(state, a, remaining);
+            step.to = (speed / braking) / step.seconds;
+            return Slide { step, stops: true };
+        }
+        return Slide { step: exact::step(state, a, remaining), stops: false };
+    }
+    let longest = carriers.iter().map(|c| longest_step(c, state, &balance.free)).fold(remaining, f64::min);
+    let step = Adaptive::new(SLIDING_TOLERANCE).step(state, longest, |s| {
+        let a = forces.acceleration(s, counters);
+        let balance = Balance::of(&a, carriers, s);
+        let direction = s.velocity.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
+        // What the carriers make of the motion itself: towards the centre of the curve.
+        balance.sliding(&direction)
+    });
+    Slide { step, stops: false }
+}
+
+/// On a curve, the time in which the ball moves by no more than a sixteenth of the radius.
+fn longest_step(carrier: &Carrier, state: &State, a: &Vector3<f64>) -> f64 {
+    match carrier.bend {
+        Bend::Flat => f64::INFINITY,
+        _ => carrier.radius / (16.0 * (state.velocity.norm() + (a.norm() * carrier.radius).sqrt())),
+    }
+}

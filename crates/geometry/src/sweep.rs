@@ -1,0 +1,330 @@
+//! A moving ball against a mesh: the first contact, what is touched there, and how far each face, edge and vertex carries.
+
+use crate::bounds::Aabb;
+use crate::bvh::FatSegment;
+use crate::contact::{Contact, MovingBall, first_contact};
+use crate::mesh::{Fold, Mesh};
+use crate::rounding::position_bound;
+use crate::triangle::{Feature, closest_point};
+use nalgebra::{Point3, Vector3};
+
+/// A place of a mesh: a face, an edge or a vertex. Each edge and vertex has one name, whichever face it was found by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Site {
+    /// A face, by its number.
+    Face(u32),
+    /// Edge `edge` (from corner `edge` to the next) of the lowest-numbered face that has it.
+    Edge {
+        /// The face.
+        face: u32,
+        /// 0, 1 or 2.
+        edge: u8,
+    },
+    /// A vertex, by its number, and the lowest-numbered face at it.
+    Vertex {
+        /// The vertex.
+        vertex: u32,
+        /// The face.
+        face: u32,
+    },
+}
+
+impl Site {
+    /// The face, or for an edge or a vertex the lowest-numbered face that has it.
+    pub fn face(&self) -> u32 {
+        match *self {
+            Site::Face(face) | Site::Edge { face, .. } | Site::Vertex { face, .. } => face,
+        }
+    }
+}
+
+/// The first contact of a ball with a mesh.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FirstContact {
+    /// Where on the path; never late.
+    pub f: f64,
+    /// The face; the lowest-numbered of those met at the same f.
+    pub face: u32,
+}
+
+/// What a ball touches.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Touch {
+    /// The place of the mesh.
+    pub site: Site,
+    /// Unit normal from the mesh to the centre of the ball.
+    pub normal: Vector3<f64>,
+}
+
+/// A bound of the region that belongs to a place: where the ball crosses it, another place carries on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RegionBound {
+    /// Unit normal out of the region.
+    pub outward: Vector3<f64>,
+    /// A point of the bounding plane.
+    pub point: Point3<f64>,
+    /// The place on the other side.
+    pub next: Site,
+}
+
+/// What a query looked at.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Nodes of the tree.
+    pub nodes: u64,
+    /// Triangles that the tree let through.
+    pub triangles: u64,
+    /// Support planes tried on them.
+    pub rounds: u64,
+}
+
+/// A path is cut no finer than into pieces whose sagitta is this share of the larger of the radius and a face's size.
+const SAGITTA_SHARE: f64 = 0.25;
+
+impl Mesh {
+    /// The first f in [0, `to`] at which `ball` touches the mesh, closing in: never late, never missed, and the same bits as if every
+    /// face had been asked. `skip` names faces that are not asked.
+    pub fn first_contact(
+        &self,
+        ball: &MovingBall,
+        to: f64,
+        skip: impl Fn(u32) -> bool,
+        work: &mut Work,
+    ) -> Option<FirstContact> {
+        let start = ball.path.start();
+        let sagitta_limit = SAGITTA_SHARE * ball.radius.max(self.face_size());
+        let mut best: Option<FirstContact> = None;
+        // Front to back: the stretch to look at next is the last of the stack.
+        let mut stack = [(0.0, to); 64];
+        let mut depth = 1;
+        while depth > 0 {
+            depth -= 1;
+            let (from, end) = stack[depth];
+            let chord = ball.path.chord(from, end);
+            let (a, b) = (start + chord.from, start + chord.to);
+            let margin = position_bound(a.coords.amax().max(b.coords.amax()).max(ball.path.reach(end)));
+            let radius = ball.radius + chord.sagitta + margin;
+            if !Aabb::of_points(&[a, b]).inflate(radius).intersects(self.bounds()) {
+                continue;
+            }
+            let middle = 0.5 * (from + end);
+            if chord.sagitta > sagitta_limit && depth + 2 <= stack.len() && middle > from && middle < end {
+                stack[depth] = (middle, end);
+                stack[depth + 1] = (from, middle);
+                depth += 2;
+                continue;
+            }
+            work.nodes += self.bvh().visit(&FatSegment { from: a, to: b, radius }, |face| {
+                if !skip(face) {
+                    work.triangles += 1;
+                    // Asked from the start of the path, not of the piece: the answer does not depend on the pieces.
+                    let limit = best.map_or(to, |found| found.f);
+                    if let Contact::At { f, .. } = first_contact(ball, &self.triangle(face), limit, &mut work.rounds)
+                        && best.is_none_or(|found| (f, face) < (found.f, found.face))
+                    {
+                        best = Some(FirstContact { f, face });
+                    }
+                }
+                best.map_or(f64::INFINITY, |found| (found.f - from) / (end - from))
+            });
+            if best.is_some_and(|found| found.f <= end) {
+                break;
+            }
+        }
+        best
+    }
+
+    /// What a ball of `radius` at `centre` touches, to within `tolerance`, in the order of the sites.
+    ///
+    /// An edge counts only where none of its faces is touched itself, and a vertex only where none of its edges and faces is: so
+    /// the inner edges of a flat or hollow surface do not show.
+    pub fn touches(&self, centre: &Point3<f64>, radius: f64, tolerance: f64, work: &mut Work) -> Vec<Touch> {
+        let reach = radius + tolerance;
+        let mut found: Vec<(Site, Vector3<f64>)> = Vec::new();
+        let around = Aabb::of_points(&[*centre]).inflate(reach + position_bound(centre.coords.amax() + reach));
+        work.nodes += self.bvh().visit_box(&around, |face| {
+            work.triangles += 1;
+            let local = self.triangle(face).map(|v| Point3::from(v - centre));
+            let closest = closest_point(&local, &Point3::origin());
+            if closest.point.coords.norm() <= reach {
+                found.push((self.site(face, closest.feature), -closest.point.coords));
+            }
+        });
+        found.sort_by_key(|(site, _)| *site);
+        found.dedup_by_key(|(site, _)| *site);
+        let hidden = |site: &Site| found.iter().any(|(other, _)| self.hides(other, site));
+        found
+            .iter()
+            .filter(|(site, _)| !hidden(site))
+            .filter_map(|&(site, away)| self.normal_at(site, &away).map(|normal| Touch { site, normal }))
+            .collect()
+    }
+
+    /// The one name of a feature of `face`.
+    fn site(&self, face: u32, feature: Feature) -> Site {
+        match feature {
+            Feature::Face => Site::Face(face),
+            Feature::Edge(edge) => self.edge_site(face, edge),
+            Feature::Vertex(corner) => self.vertex_site(self.faces()[face as usize][corner as usize]),
+        }
+    }
+
+    fn edge_site(&self, face: u32, edge: u8) -> Site {
+        let ends = self.edge_ends(face, edge);
+        let owner = self.edge_faces(face, edge).min().unwrap_or(face);
+        let edge = (0..3).find(|&i| same_ends(self.edge_ends(owner, i), ends)).unwrap_or(edge);
+        Site::Edge { face: owner, edge }
+    }
+
+    fn vertex_site(&self, vertex: u32) -> Site {
+        Site::Vertex { vertex, face: self.vertex_faces(vertex).first().copied().unwrap_or(0) }
+    }
+
+    fn edge_ends(&self, face: u32, edge: u8) -> [u32; 2] {
+        let corners = self.faces()[face as usize];
+        [corners[edge as usize], corners[(edge as usize + 1) % 3]]
+    }
+
+    /// Whether `site` is a part of the border of `other`, which is touched itself.
+    fn hides(&self, other: &Site, site: &Site) -> bool {
+        match (*other, *site) {
+            (Site::Face(f), Site::Edge { face, edge }) => {
+                let [a, b] = self.edge_ends(face, edge);
+                let corners = self.faces()[f as usize];
+                corners.contains(&a) && corners.contains(&b)
+            }
+            (Site::Face(f), Site::Vertex { vertex, .. }) => self.faces()[f as usize].contains(&vertex),
+            (Site::Edge { face, edge }, Site::Vertex { vertex, .. }) => self.edge_ends(face, edge).contains(&vertex),
+            _ => false,
+        }
+    }
+
+    /// The normal at a touched site: the face's own on a face and on a flat edge, else from the touched point to the centre.
+    fn normal_at(&self, site: Site, away: &Vector3<f64>) -> Option<Vector3<f64>> {
+        let facing = |face: u32| {
+            let n = self.normal(face)?.into_inner();
+            Some(if n.dot(away) < 0.0 { -n } else { n })
+        };
+        match site {
+            Site::Face(face) => facing(face),
+            Site::Edge { face, edge } if self.fold(face, edge) == Fold::Flat => facing(face),
+            _ => away.try_normalize(0.0).or_else(|| facing(site.face())),
+        }
+    }
+
+    /// The bounds of the region in which `site` is what of the mesh is nearest to a ball beside it.
+    pub fn region(&self, site: Site) -> Vec<RegionBound> {
+        let vertex = |v: u32| self.vertices()[v as usize];
+        match site {
+            Site::Face(face) => (0..3u8)
+                .filter_map(|edge| {
+                    let outward = self.out_of(face, edge)?;
+                    let flat = self.fold(face, edge) == Fold::Flat;
+                    let neighbour = self.edge_faces(face, edge).find(|&f| f != face);
+                    let next = match neighbour {
+                        Some(other) if flat => Site::Face(other),
+                        _ => self.edge_site(face, edge),
+                    };
+                    Some(RegionBound { outward, point: vertex(self.edge_ends(face, edge)[0]), next })
+                })
+                .collect(),
+            Site::Edge { face, edge } => {
+                let [a, b] = self.edge_ends(face, edge);
+                let mut bounds = Vec::new();
+                if let Some(along) = (vertex(b) - vertex(a)).try_normalize(0.0) {
+                    bounds.push(RegionBound { outward: -along, point: vertex(a), next: self.vertex_site(a) });
+                    bounds.push(RegionBound { outward: along, point: vertex(b), next: self.vertex_site(b) });
+                }
+                for other in self.edge_faces(face, edge) {
+                    let local = (0..3).find(|&i| same_ends(self.edge_ends(other, i), [a, b]));
+                    if let Some(outward) = local.and_then(|i| self.out_of(other, i)) {
+                        bounds.push(RegionBound { outward: -outward, point: vertex(a), next: Site::Face(other) });
+                    }
+                }
+                bounds
+            }
+            Site::Vertex { vertex: v, .. } => {
+                let mut bounds: Vec<RegionBound> = Vec::new();
+                for &face in self.vertex_faces(v) {
+                    for edge in 0..3u8 {
+                        let [a, b] = self.edge_ends(face, edge);
+                        let far = if a == v { b } else { a };
+                        let next = self.edge_site(face, edge);
+                        if (a == v || b == v) && bounds.iter().all(|bound| bound.next != next) {
+                            if let Some(outward) = (vertex(far) - vertex(v)).try_normalize(0.0) {
+                                bounds.push(RegionBound { outward, point: vertex(v), next });
+                            }
+                        }
+                    }
+                }
+            
+                bounds
+            }
+        }
+    }
+
+    /// The unit vector in the plane of `face` that leads out of it across `edge`.
+    fn out_of(&self, face: u32, edge: u8) -> Option<Vector3<f64>> {
+        let [a, b] = self.edge_ends(face, edge).map(|v| self.vertices()[v as usize]);
+        (b - a).cross(&self.normal(face)?).try_normalize(0.0)
+    }
+
+    /// How `site` curves: the directions in which the surface a ball rolls over it on is straight. A face is flat, across an edge and
+    /// around a vertex the centre moves on a circle of the ball's radius.
+    pub fn bend(&self, site: Site) -> Bend {
+        match site {
+            Site::Face(_) => Bend::Flat,
+            Site::Edge { face, edge } if self.fold(face, edge) == Fold::Flat => Bend::Flat,
+            Site::Edge { face, edge } => {
+                let [a, b] = self.edge_ends(face, edge).map(|v| self.vertices()[v as usize]);
+                match (b - a).try_normalize(0.0) {
+                    Some(along) => Bend::Around { point: a, along },
+                    None => Bend::About { point: a },
+                }
+            }
+            Site::Vertex { vertex, .. } => Bend::About { point: self.vertices()[vertex as usize] },
+        }
+    }
+
+    /// Where `site` is nearest to `centre`, taken as an infinite plane or line, and the unit normal from there to `centre`.
+    /// None where the centre lies on it.
+    pub fn foot(&self, site: Site, centre: &Point3<f64>) -> Option<(Point3<f64>, Vector3<f64>)> {
+        let away = match self.bend(site) {
+            Bend::Around { point, along } => {
+                let w = centre - point;
+                w - along * along.dot(&w)
+            }
+            Bend::About { point } => centre - point,
+            Bend::Flat => {
+                let face = site.face();
+                let (n, point) = (self.normal(face)?.into_inner(), self.triangle(face)[0]);
+                let height = n.dot(&(centre - point));
+                return Some((centre - n * height, if height < 0.0 { -n } else { n }));
+            }
+        };
+        away.try_normalize(0.0).map(|n| (centre - away, n))
+    }
+}
+
+/// The shape that the centre of a ball follows while it moves on a place of a mesh.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Bend {
+    /// A plane.
+    Flat,
+    /// A cylinder around an edge.
+    Around {
+        /// A point of the edge.
+        point: Point3<f64>,
+        /// The unit direction of the edge.
+        along: Vector3<f64>,
+    },
+    /// A sphere about a vertex.
+    About {
+        /// The vertex.
+        point: Point3<f64>,
+    },
+}
+
+fn same_ends(a: [u32; 2], b: [u32; 2]) -> bool {
+    a == b || a == [b[1], b[0]]
+}
