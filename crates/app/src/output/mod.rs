@@ -1,5 +1,7 @@
 //! Where results go, and in which form.
 
+pub mod files;
+pub mod recorder;
 pub mod rows;
 pub mod target;
 

@@ -3,8 +3,10 @@
 use super::build::{Builder, at};
 use super::file::{MeshTable, PlaneTable, ShapeTable, SurfaceTable};
 use super::problem::{Problem, choose};
+use super::tree::Step;
 use crate::mesh_file;
 use carom_dynamics::surface::{Material, Shape, Surface};
+use carom_geometry::error::PolygonError;
 use carom_geometry::mesh::Mesh;
 use carom_geometry::plane::Plane;
 use carom_geometry::polygon::Polygon;
@@ -86,7 +88,16 @@ fn polygon_shape(builder: &mut Builder<'_>, i: usize, vertices: &[[f64; 3]]) -> 
     match Polygon::new(vertices.iter().copied().map(Point3::from).collect()) {
         Ok(polygon) => Some(Shape::Polygon(polygon)),
         Err(error) => {
-            builder.refuse(at!["surfaces", i, "shape", "polygon"], Problem::new(error.to_string()));
+            let polygon = at!["surfaces", i, "shape", "polygon"];
+            let vertex = match error {
+                PolygonError::NotFinite { vertex, .. }
+                | PolygonError::RepeatedVertex { vertex, .. }
+                | PolygonError::NotPlanar { vertex, .. } => Some(vertex),
+                PolygonError::EdgesCross { second, .. } => Some(second),
+                _ => None,
+            };
+            let place: Vec<_> = polygon.iter().copied().chain(vertex.map(Step::Index)).collect();
+            builder.refuse(&place, Problem::new(error.to_string()));
             None
         }
     }
