@@ -22,7 +22,8 @@ impl Clock {
     pub fn advance(&mut self, seconds: f64) -> bool {
         let before = self.now();
         let sum = self.sum + seconds;
-        let larger_first = if self.sum.abs() >= seconds.abs() { (self.sum - sum) + seconds } else { (seconds - sum) + self.sum };
+        let larger_first =
+            if self.sum.abs() >= seconds.abs() { (self.sum - sum) + seconds } else { (seconds - sum) + self.sum };
         self.lost += larger_first;
         self.sum = sum;
         self.now() != before

@@ -20,10 +20,7 @@ pub(crate) fn require(name: &'static str, value: f64, expected: &'static str, ok
 }
 
 /// Refuses a vector with a component that is not finite.
-pub(crate) fn require_finite(
-    name: &'static str,
-    v: &nalgebra::Vector3<f64>,
-) -> Result<(), ValueError> {
+pub(crate) fn require_finite(name: &'static str, v: &nalgebra::Vector3<f64>) -> Result<(), ValueError> {
     match v.iter().find(|c| !c.is_finite()) {
         Some(&value) => Err(ValueError { name, value, expected: "finite" }),
         None => Ok(()),
@@ -63,7 +60,9 @@ pub enum SceneError {
         effect: &'static str,
     },
     /// The ball is too small for f64 to represent it at its place.
-    #[error("ball {ball} has radius {radius} m, below {least} m, which is what f64 resolves {distance} m from the origin; move the scene nearer to the origin")]
+    #[error(
+        "ball {ball} has radius {radius} m, below {least} m, which is what f64 resolves {distance} m from the origin; move the scene nearer to the origin"
+    )]
     RadiusBelowResolution {
         /// Index of the ball in the scene, from 0.
         ball: usize,

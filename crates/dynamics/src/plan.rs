@@ -148,9 +148,8 @@ fn method(scene: &Scene, flows: &[Arc<dyn Flow>]) -> Result<Method, SceneError> 
         (None, []) => Method::Exact,
         (None, _) => Method::Adaptive { tolerance: FLIGHT_TOLERANCE },
     };
-    let positive = |name, x: f64, expected| -> Result<f64, ValueError> {
-        require(name, x, expected, x.is_finite() && x > 0.0)
-    };
+    let positive =
+        |name, x: f64, expected| -> Result<f64, ValueError> { require(name, x, expected, x.is_finite() && x > 0.0) };
     match method {
         Method::Exact => {}
         Method::Euler { step } | Method::SemiImplicitEuler { step } | Method::Rk4 { step } => {

@@ -18,7 +18,12 @@ const MAX_REPEATS: u32 = 32;
 
 /// The velocity after an impact with velocity `v` (m/s), of which at least one of `contacts` is closing; leaves in each contact the
 /// rate with which it separates. `materials[i]` is what contact i is made of.
-pub fn respond(v: Vector3<f64>, contacts: &mut [Contact], materials: &[Material], counters: &mut Counters) -> Vector3<f64> {
+pub fn respond(
+    v: Vector3<f64>,
+    contacts: &mut [Contact],
+    materials: &[Material],
+    counters: &mut Counters,
+) -> Vector3<f64> {
     let after = match contacts.iter().filter(|c| c.rate < 0.0).count() {
         1 => respond_to_one(v, contacts, materials, counters),
         _ => None,

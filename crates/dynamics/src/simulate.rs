@@ -156,7 +156,8 @@ impl<O: Observer> Walk<'_, O> {
     fn arrive(&mut self, step: &Step, hit: Hit, returns: &Returns) {
         let tolerance = self.touch_tolerance(step.path.reach(hit.f));
         let before = std::mem::take(&mut self.contacts);
-        let mut contacts = self.obstacles.touching(&self.state.position, &self.state.velocity, tolerance, &mut self.counters);
+        let mut contacts =
+            self.obstacles.touching(&self.state.position, &self.state.velocity, tolerance, &mut self.counters);
         for contact in &mut contacts {
             self.correct(contact, tolerance);
             contact.rate = self.rate(step, hit, contact, &before, returns);
@@ -211,7 +212,8 @@ impl<O: Observer> Walk<'_, O> {
 
     /// The rate of change of a contact's clearance on arrival: from the clearance itself where it was solved, else n.v.
     fn rate(&self, step: &Step, hit: Hit, contact: &Contact, before: &[Contact], returns: &Returns) -> f64 {
-        let known = before.iter().zip(returns).find(|(b, _)| b.surface == contact.surface && b.normal == contact.normal);
+        let known =
+            before.iter().zip(returns).find(|(b, _)| b.surface == contact.surface && b.normal == contact.normal);
         if let Some((b, known)) = known {
             match known.entry {
                 _ if b.lasting => return 0.0,
@@ -512,7 +514,8 @@ impl<O: Observer> Walk<'_, O> {
     fn rest(&mut self) {
         let end = self.plan.duration;
         let zero = Vector3::zeros();
-        let step = crate::integrators::exact::step(&State { velocity: zero, ..self.state }, zero, self.clock.until(end));
+        let step =
+            crate::integrators::exact::step(&State { velocity: zero, ..self.state }, zero, self.clock.until(end));
         self.travel(&step, step.to, Motion::Resting);
         self.clock.set(end);
     }

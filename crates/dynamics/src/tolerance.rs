@@ -57,9 +57,7 @@ impl RestThresholds {
     /// with its logarithm.
     pub fn at(&self, pressed: f64) -> Thresholds {
         match *self {
-            Self::Length(length) => {
-                Thresholds { speed: (2.0 * pressed * length).sqrt(), distance: length, force: 0.0 }
-            }
+            Self::Length(length) => Thresholds { speed: (2.0 * pressed * length).sqrt(), distance: length, force: 0.0 },
             Self::Book { speed, distance, force } => Thresholds { speed, distance, force },
         }
     }

@@ -7,9 +7,9 @@
 //! support plane makes it exact for a face and quadratically convergent for edges and vertices.)
 
 use crate::clearance::{Clearance, Entry};
+use crate::closest::{Feature, closest_point};
 use crate::path::Path;
 use crate::rounding::{UNIT_ROUNDOFF, contact_bound};
-use crate::triangle::{Feature, closest_point};
 use nalgebra::{Point3, Vector3};
 
 /// A plane the ball is known to touch at the start of its path: the contact it just had, or has.
@@ -73,7 +73,7 @@ pub fn first_contact(ball: &MovingBall, triangle: &[Point3<f64>; 3], to: f64, ro
         *rounds += 1;
         let centre = path.displacement(f);
         let closest = closest_point(&corners, &Point3::from(centre));
-        let away = centre - closest.point.coords;
+        let away = closest.offset;
         let distance = away.norm();
         let normal = if distance > 0.0 { away / distance } else { escape_direction(&corners, path, f) };
         let gap = -farthest_along(&corners, &normal) - ball.radius;

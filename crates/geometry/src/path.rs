@@ -99,7 +99,7 @@ impl Path {
     /// A box around the stretch of the path over [from, to].
     pub fn bounds(&self, from: f64, to: f64) -> Aabb {
         let chord = self.chord(from, to);
-        Aabb::of_points([self.start + chord.from, self.start + chord.to]).inflate(chord.sagitta)
+        Aabb::of_points(&[self.start + chord.from, self.start + chord.to]).inflate(chord.sagitta)
     }
 }
 

@@ -114,6 +114,22 @@ pub fn scale(x: f64, k: i32) -> f64 {
     x * power_of_two(k / 2) * power_of_two(k - k / 2)
 }
 
+/// How much the computed distance n.(p - a) - r between a support plane and a ball may be off, n a unit vector and `extent`
+/// the sum of the largest |coordinate| of a - start, r, and the reach of the path, all relative to the start of the path.
+///
+/// a - start and each term of p carry 2 u of the extent; three products and their sums gamma(4) of sqrt(3) times it, both dot
+/// products; n itself is off by 4 u. That is sqrt(3) 4 + 2 + 4 < 16 of it.
+pub fn contact_bound(extent: f64) -> f64 {
+    16.0 * UNIT_ROUNDOFF * extent
+}
+
+/// The radius in m that stands for a point against a mesh whose largest |coordinate| is `farthest`: 2^14 units of
+/// roundoff, so that the centre stays on its own side whatever the rounding of its position (64 units), and so that what the ball
+/// touches to within that rounding has normals within sqrt(2 64 / 2^14), a twelfth of a radian.
+pub fn point_radius(farthest: f64) -> f64 {
+    16384.0 * UNIT_ROUNDOFF * farthest
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -2,10 +2,10 @@
 
 use crate::bounds::Aabb;
 use crate::bvh::FatSegment;
+use crate::closest::{Feature, closest_point};
 use crate::contact::{Contact, MovingBall, first_contact};
 use crate::mesh::{Fold, Mesh};
 use crate::rounding::position_bound;
-use crate::triangle::{Feature, closest_point};
 use nalgebra::{Point3, Vector3};
 
 /// A place of a mesh: a face, an edge or a vertex. Each edge and vertex has one name, whichever face it was found by.
@@ -146,8 +146,8 @@ impl Mesh {
             work.triangles += 1;
             let local = self.triangle(face).map(|v| Point3::from(v - centre));
             let closest = closest_point(&local, &Point3::origin());
-            if closest.point.coords.norm() <= reach {
-                found.push((self.site(face, closest.feature), -closest.point.coords));
+            if closest.offset.norm() <= reach {
+                found.push((self.site(face, closest.feature), closest.offset));
             }
         });
         found.sort_by_key(|(site, _)| *site);
@@ -170,10 +170,8 @@ impl Mesh {
     }
 
     fn edge_site(&self, face: u32, edge: u8) -> Site {
-        let ends = self.edge_ends(face, edge);
-        let owner = self.edge_faces(face, edge).min().unwrap_or(face);
-        let edge = (0..3).find(|&i| same_ends(self.edge_ends(owner, i), ends)).unwrap_or(edge);
-        Site::Edge { face: owner, edge }
+        let (face, side) = self.edge(face, edge.into()).owner;
+        Site::Edge { face, edge: side as u8 }
     }
 
     fn vertex_site(&self, vertex: u32) -> Site {
@@ -207,7 +205,7 @@ impl Mesh {
         };
         match site {
             Site::Face(face) => facing(face),
-            Site::Edge { face, edge } if self.fold(face, edge) == Fold::Flat => facing(face),
+            Site::Edge { face, edge } if self.fold(face, edge.into()) == Fold::Flat => facing(face),
             _ => away.try_normalize(0.0).or_else(|| facing(site.face())),
         }
     }
@@ -219,9 +217,8 @@ impl Mesh {
             Site::Face(face) => (0..3u8)
                 .filter_map(|edge| {
                     let outward = self.out_of(face, edge)?;
-                    let flat = self.fold(face, edge) == Fold::Flat;
-                    let neighbour = self.edge_faces(face, edge).find(|&f| f != face);
-                    let next = match neighbour {
+                    let flat = self.fold(face, edge.into()) == Fold::Flat;
+                    let next = match self.neighbours(face, edge.into()).next() {
                         Some(other) if flat => Site::Face(other),
                         _ => self.edge_site(face, edge),
                     };
@@ -235,7 +232,7 @@ impl Mesh {
                     bounds.push(RegionBound { outward: -along, point: vertex(a), next: self.vertex_site(a) });
                     bounds.push(RegionBound { outward: along, point: vertex(b), next: self.vertex_site(b) });
                 }
-                for other in self.edge_faces(face, edge) {
+                for other in self.faces_at(site) {
                     let local = (0..3).find(|&i| same_ends(self.edge_ends(other, i), [a, b]));
                     if let Some(outward) = local.and_then(|i| self.out_of(other, i)) {
                         bounds.push(RegionBound { outward: -outward, point: vertex(a), next: Site::Face(other) });
@@ -257,7 +254,7 @@ impl Mesh {
                         }
                     }
                 }
-            
+
                 bounds
             }
         }
@@ -266,7 +263,25 @@ impl Mesh {
     /// The unit vector in the plane of `face` that leads out of it across `edge`.
     fn out_of(&self, face: u32, edge: u8) -> Option<Vector3<f64>> {
         let [a, b] = self.edge_ends(face, edge).map(|v| self.vertices()[v as usize]);
-        (b - a).cross(&self.normal(face)?).try_normalize(0.0)
+        let opposite = self.triangle(face)[(edge as usize + 2) % 3];
+        let normal = self.normal(face)?.into_inner();
+        let outward = (b - a).cross(&normal).try_normalize(0.0)?;
+        // The normal of a face declared planar need not go with its winding.
+        Some(if outward.dot(&(opposite - a)) > 0.0 { -outward } else { outward })
+    }
+
+    /// The faces that `site` is, or that meet in it.
+    pub fn faces_at(&self, site: Site) -> Vec<u32> {
+        match site {
+            Site::Face(face) => vec![face],
+            Site::Edge { face, edge } => std::iter::once(face).chain(self.neighbours(face, edge.into())).collect(),
+            Site::Vertex { vertex, .. } => self.vertex_faces(vertex).to_vec(),
+        }
+    }
+
+    /// About the length of a side of a face, from the size of the mesh and the number of faces.
+    fn face_size(&self) -> f64 {
+        self.bounds().extent().amax() / (self.faces().len() as f64).sqrt()
     }
 
     /// How `site` curves: the directions in which the surface a ball rolls over it on is straight. A face is flat, across an edge and
@@ -274,7 +289,7 @@ impl Mesh {
     pub fn bend(&self, site: Site) -> Bend {
         match site {
             Site::Face(_) => Bend::Flat,
-            Site::Edge { face, edge } if self.fold(face, edge) == Fold::Flat => Bend::Flat,
+            Site::Edge { face, edge } if self.fold(face, edge.into()) == Fold::Flat => Bend::Flat,
             Site::Edge { face, edge } => {
                 let [a, b] = self.edge_ends(face, edge).map(|v| self.vertices()[v as usize]);
                 match (b - a).try_normalize(0.0) {

@@ -99,7 +99,9 @@ mod tests {
     fn r19_linear_friction_keeps_one_minus_c_f() {
         let friction = Friction::linear(0.25).unwrap();
         assert_eq!(friction.slow(Vector3::new(4.0, -8.0, 0.0), 1.0, 0.5), Vector3::new(3.0, -6.0, 0.0));
-        assert!(Friction::linear(1.5).is_err() && Friction::linear(-0.1).is_err() && Friction::linear(f64::NAN).is_err());
+        assert!(
+            Friction::linear(1.5).is_err() && Friction::linear(-0.1).is_err() && Friction::linear(f64::NAN).is_err()
+        );
     }
 
     #[test]

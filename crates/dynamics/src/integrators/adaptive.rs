@@ -19,15 +19,8 @@ const A: [[f64; 6]; 6] = [
     [35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0],
 ];
 /// Difference of the two orders' weights.
-const E: [f64; 7] = [
-    71.0 / 57600.0,
-    0.0,
-    -71.0 / 16695.0,
-    71.0 / 1920.0,
-    -17253.0 / 339200.0,
-    22.0 / 525.0,
-    -1.0 / 40.0,
-];
+const E: [f64; 7] =
+    [71.0 / 57600.0, 0.0, -71.0 / 16695.0, 71.0 / 1920.0, -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0];
 /// Weights of the dense output's highest term.
 const D: [f64; 7] = [
     -12715105075.0 / 11282082432.0,
@@ -57,7 +50,12 @@ impl Adaptive {
     }
 
     /// A step of at most `remaining` seconds under `acceleration`.
-    pub fn step(&mut self, state: &State, remaining: f64, mut acceleration: impl FnMut(&State) -> Vector3<f64>) -> Step {
+    pub fn step(
+        &mut self,
+        state: &State,
+        remaining: f64,
+        mut acceleration: impl FnMut(&State) -> Vector3<f64>,
+    ) -> Step {
         let mut h = self.next.min(remaining);
         for _ in 0..MAX_HALVINGS {
             let (step, error) = self.attempt(state, h, &mut acceleration);

@@ -11,8 +11,7 @@ use nalgebra::Vector3;
 /// only at the end of the step.
 pub fn step(forces: &Forces, state: &State, h: f64, counters: &mut Counters) -> Step {
     let State { position: x, velocity: v } = *state;
-    let mut acceleration =
-        |position, velocity| forces.acceleration(&State { position, velocity }, counters);
+    let mut acceleration = |position, velocity| forces.acceleration(&State { position, velocity }, counters);
     let a1 = acceleration(x, v);
     let v2 = v + a1 * (0.5 * h);
     let a2 = acceleration(x + v * (0.5 * h), v2);
