@@ -1,3 +1,5 @@
-//! Bouncing-ball simulation from the command line.
+//! The program `carom`.
 
-fn main() {}
+fn main() -> std::process::ExitCode {
+    carom::main()
+}

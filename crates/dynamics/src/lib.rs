@@ -17,6 +17,7 @@ pub mod plan;
 pub mod contacts;
 pub mod clock;
 pub mod events;
+pub mod energy;
 pub mod collision;
 pub mod support;
 pub mod response;

@@ -1,0 +1,116 @@
+//! The command line: commands, options and their help.
+
+use clap::{Args, Parser, Subcommand, ValueHint};
+use clap_complete::Shell;
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+const EXIT_CODES: &str = "\
+Exit codes:
+  0  done
+  1  a file could not be read or written, or an internal error
+  2  the command line is not valid
+  3  the scene or mesh is not valid
+  4  the run was ended by a guard (event budget, unresolved contact)
+  5  a target was not met";
+
+/// Bouncing balls that people can trust: exact collisions, named physics, the same bits on every machine.
+///
+/// A scene file says what moves, what it bounces on and which effects take part; `carom schema` describes its keys.
+#[derive(Debug, Parser)]
+#[command(name = "carom", version, after_help = EXIT_CODES, max_term_width = 100)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Simulate a scene
+    ///
+    /// Prints a short summary on standard error. Events, frames and a summary in JSON are written where asked for; a file
+    /// appears only once it is complete.
+    Run(RunArgs),
+    /// List all that is wrong with a scene or a mesh
+    ///
+    /// A scene (.toml, .json) is read as `run` would read it, and the meshes it names are examined. A mesh (.obj, .stl, .ply)
+    /// is examined for degenerate and duplicate faces, non-manifold and open edges, inconsistent winding and the like,
+    /// each with its face numbers. Exit code 3 if there is an error; warnings alone are 0.
+    Check(CheckArgs),
+    /// Print the JSON schema of scene files, for editors
+    Schema,
+    /// Print tables of restitution and friction, with their sources
+    Materials(MaterialsArgs),
+    /// Print the completions of a shell
+    Completions(CompletionsArgs),
+}
+
+/// What `run` takes.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  carom run room.toml
+  carom run room.toml --events events.csv --frames frames.csv --fps 30
+  carom run room.toml --balls balls.csv --events - | head")]
+pub struct RunArgs {
+    /// The scene: a .toml or .json file
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub scene: PathBuf,
+    /// Write the events (impacts, slides, rests ...) to FILE: .csv or .jsonl; `-` is standard output, as CSV
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub events: Option<PathBuf>,
+    /// Write the balls at every frame to FILE: .csv or .jsonl; `-` is standard output, as CSV
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub frames: Option<PathBuf>,
+    /// Frames per second, also as a fraction: 24, 29.97 or 30000/1001
+    #[arg(long, value_name = "N", default_value = "60", value_parser = frames_per_second)]
+    pub fps: f64,
+    /// Write the summary to FILE as JSON; `-` is standard output
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub summary: Option<PathBuf>,
+    /// Read the balls from FILE instead of the scene; `-` is standard input
+    ///
+    /// CSV with a header: x,y,z and any of vx,vy,vz,radius,mass, with the defaults of a scene.
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub balls: Option<PathBuf>,
+    /// Simulate with N threads; the output is the same bytes for any N [default: one per processor]
+    #[arg(long, value_name = "N")]
+    pub threads: Option<NonZeroUsize>,
+    /// Print nothing but errors
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+/// What `check` takes.
+#[derive(Debug, Args)]
+pub struct CheckArgs {
+    /// A scene (.toml, .json) or a mesh (.obj, .stl, .ply)
+    #[arg(value_name = "SCENE-OR-MESH", value_hint = ValueHint::FilePath)]
+    pub file: PathBuf,
+}
+
+/// What `materials` takes.
+#[derive(Debug, Args)]
+pub struct MaterialsArgs {
+    /// Print JSON instead of tables
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What `completions` takes.
+#[derive(Debug, Args)]
+pub struct CompletionsArgs {
+    /// The shell
+    pub shell: Shell,
+}
+
+/// Reads `N` or `A/B`, finite and above 0.
+fn frames_per_second(word: &str) -> Result<f64, String> {
+    let number = |part: &str| part.trim().parse::<f64>().map_err(|_| format!("`{part}` is not a number"));
+    let fps = match word.split_once('/') {
+        Some((a, b)) => number(a)? / number(b)?,
+        None => number(word)?,
+    };
+    if fps.is_finite() && fps > 0.0 { Ok(fps) } else { Err("frames per second must be finite and > 0".to_owned()) }
+}

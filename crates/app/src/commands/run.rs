@@ -1,0 +1,50 @@
+//! `carom run`: simulates a scene and writes what happened.
+
+use crate::cli::RunArgs;
+use crate::error::AppError;
+use crate::output::files::{Files, refuse_clashes};
+use crate::output::recorder::Recording;
+use crate::output::target::Demand;
+use crate::scene;
+use crate::summary::Tally;
+use crate::terminal::{Progress, say};
+use carom_dynamics::plan::Plan;
+use carom_dynamics::run::run_balls;
+use std::num::NonZeroUsize;
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+/// Simulates the scene.
+pub fn run(args: &RunArgs) -> Result<(), AppError> {
+    refuse_clashes(args)?;
+    let loaded = scene::load(&args.scene, args.balls.as_deref())?;
+    let plan = Plan::new(&loaded.scene).map_err(|error| loaded.refuse(&error))?;
+    let recording = Recording::new(args, &loaded.scene)?;
+    let mut files = Files::open(args, &recording)?;
+    let start = Instant::now();
+    let mut tally = Tally::new(&loaded.scene);
+    let mut progress = Progress::new(loaded.scene.balls.len(), args.quiet);
+    // Why the run was broken off: an output that cannot be written, or none that is read any more.
+    let mut stopped = None;
+    let threads = args.threads.map(NonZeroUsize::get);
+    let simulated = run_balls(&plan, threads, |ball| recording.of(ball), |ball, recorder, outcome| {
+        tally.add(ball, &outcome);
+        progress.step();
+        match files.write(&recorder) {
+            Ok(Demand::Open) => ControlFlow::Continue(()),
+            Ok(Demand::Closed) => ControlFlow::Break(stopped = Some(Ok(()))),
+            Err(error) => ControlFlow::Break(stopped = Some(Err(error))),
+        }
+    });
+    progress.finish();
+    simulated.map_err(|e| AppError::Internal(e.to_string()))?;
+    if let Some(result) = stopped {
+        return result;
+    }
+    let summary = tally.finish(start.elapsed());
+    files.finish(&summary.json())?;
+    if !args.quiet {
+        say(&summary.text());
+    }
+    summary.guarded().map_or(Ok(()), |message| Err(AppError::Guard(message)))
+}

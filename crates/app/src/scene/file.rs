@@ -1,0 +1,219 @@
+//! The keys of a scene file. Their documentation is the user's: `carom schema` is made of it.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+
+/// A scene: what moves, what it bounces on, and which effects take part. SI units throughout.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a scene, which is a table")]
+#[schemars(title = "Carom scene")]
+pub struct SceneFile {
+    /// The version of this format: 1.
+    #[schemars(range(min = 1, max = 1))]
+    pub version: u64,
+    /// For how long to simulate, in s, greater than 0.
+    pub duration: f64,
+    /// The acceleration of gravity, in m/s^2, such as [0, 0, -9.81]. Without this key there is no gravity.
+    pub gravity: Option<[f64; 3]>,
+    /// The air and its resistance. Without this table the balls fly in a vacuum.
+    pub air: Option<AirTable>,
+    /// The materials that surfaces are made of, by name.
+    #[serde(default)]
+    pub materials: BTreeMap<String, MaterialTable>,
+    /// What the balls bounce on. Both sides of every surface collide.
+    #[serde(default)]
+    pub surfaces: Vec<SurfaceTable>,
+    /// The balls. May be left out when they are given with `--balls`.
+    #[serde(default)]
+    pub balls: Vec<BallTable>,
+    /// When bouncing ends and a ball counts as at rest. Without this table the thresholds follow from the scene.
+    pub rest: Option<RestTable>,
+    /// How flights are computed. Without this table: exactly, wherever the scene allows it.
+    pub method: Option<MethodTable>,
+}
+
+/// The air.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a table such as { drag = { linear = 0.05 } }")]
+pub struct AirTable {
+    /// The velocity of the wind, in m/s. Needs a drag law: without resistance, wind does nothing.
+    pub wind: Option<[f64; 3]>,
+    /// The law of air resistance: either `linear`, or `coefficient` and `density`.
+    pub drag: Option<DragTable>,
+}
+
+/// Air resistance: { linear = k }, or { coefficient = C, density = rho } for the quadratic law.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a table, { linear = k } or { coefficient = C, density = rho }")]
+pub struct DragTable {
+    /// k in kg/s of the linear law F = -k (v - w).
+    pub linear: Option<f64>,
+    /// The drag coefficient C, no unit, of the quadratic law F = -1/2 rho C A |v - w| (v - w); about 0.47 for a sphere.
+    pub coefficient: Option<f64>,
+    /// The density rho of the air in kg/m^3, for the quadratic law; about 1.204 at 20 C.
+    pub density: Option<f64>,
+}
+
+/// A material.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a table such as { restitution = 0.75 }")]
+pub struct MaterialTable {
+    /// The coefficient of restitution c_r, from 0 (sticks) to 1 (loses nothing).
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub restitution: f64,
+    /// The law of friction. Without this key: none.
+    pub friction: Option<FrictionTable>,
+}
+
+/// Friction at an impact: exactly one of its laws.
+#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", expecting = "a table with one law, such as { coulomb = 0.6 }")]
+pub enum FrictionTable {
+    /// c_f, from 0 to 1: the tangential velocity is multiplied by 1 - c_f.
+    Linear(f64),
+    /// mu, the book's Coulomb law: the tangential speed falls by up to mu times the closing speed.
+    Coulomb(f64),
+    /// mu, the impulse law: the tangential speed falls by up to mu (1 + c_r) times the closing speed.
+    Impulse(f64),
+}
+
+/// A fixed surface.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a table with `name`, `material` and `shape`")]
+pub struct SurfaceTable {
+    /// Its name, by which events refer to it; each name once.
+    pub name: String,
+    /// The name of its material, one of `materials`.
+    #[schemars(required)]
+    pub material: Option<String>,
+    /// Where it is: exactly one of `plane`, `polygon` and `mesh`.
+    pub shape: ShapeTable,
+}
+
+/// The shape of a surface: exactly one of these.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", expecting = "a table with one of `plane`, `polygon` and `mesh`")]
+pub enum ShapeTable {
+    /// An infinite plane.
+    Plane(PlaneTable),
+    /// The vertices of a simple planar polygon in order, in m; convex or concave.
+    Polygon(#[schemars(length(min = 3))] Vec<[f64; 3]>),
+    /// A triangle mesh from a file.
+    Mesh(MeshTable),
+}
+
+/// A plane: { point, normal }, or { coefficients }.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a table, { point = [..], normal = [..] } or { coefficients = [A, B, C, D] }")]
+pub struct PlaneTable {
+    /// A point of the plane, in m.
+    pub point: Option<[f64; 3]>,
+    /// A vector at right angles to the plane, of any length but 0.
+    pub normal: Option<[f64; 3]>,
+    /// [A, B, C, D] of A x + B y + C z + D = 0.
+    pub coefficients: Option<[f64; 4]>,
+}
+
+/// A mesh file and how it is placed: first `up`, then `scale`, then `translate`.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a table such as { file = \"hill.obj\" }")]
+pub struct MeshTable {
+    /// The file, relative to the scene file: OBJ, STL or PLY.
+    pub file: String,
+    /// Metres per unit of the file, greater than 0.
+    #[serde(default = "one")]
+    #[schemars(range(min = 0.0))]
+    pub scale: f64,
+    /// Where the origin of the file comes to lie, in m.
+    #[serde(default)]
+    pub translate: [f64; 3],
+    /// The axis of the file that points up: it becomes z, and the other two follow in cyclic order.
+    #[serde(default)]
+    pub up: Up,
+}
+
+fn one() -> f64 {
+    1.0
+}
+
+/// An axis of a mesh file.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", expecting = "\"x\", \"y\" or \"z\"")]
+pub enum Up {
+    X,
+    Y,
+    #[default]
+    Z,
+}
+
+/// A ball, or a grid of equal balls.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a table such as { position = [0, 0, 1] }")]
+pub struct BallTable {
+    /// Where its centre starts, in m.
+    pub position: [f64; 3],
+    /// Its velocity at the start, in m/s.
+    #[serde(default)]
+    pub velocity: [f64; 3],
+    /// Its radius in m; 0 is a point.
+    #[serde(default)]
+    #[schemars(range(min = 0.0))]
+    pub radius: f64,
+    /// Its mass in kg, greater than 0; needed only by effects that divide a force by it.
+    pub mass: Option<f64>,
+    /// Repeats the ball in a grid.
+    pub grid: Option<GridTable>,
+}
+
+/// A grid of balls: ball (i, j, k) starts at position + (i, j, k) * step, and i runs fastest.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a table, { count = [nx, ny, nz], step = [dx, dy, dz] }")]
+pub struct GridTable {
+    /// How many balls along x, y and z, each 1 or more.
+    pub count: [u32; 3],
+    /// The distances between neighbours along x, y and z, in m.
+    pub step: [f64; 3],
+}
+
+/// The thresholds of the rest test: `length` alone, or the book's `speed`, `distance` and `force` together.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a table, { length = .. } or { speed = .., distance = .., force = .. }")]
+pub struct RestTable {
+    /// The one tolerance, in m: a hop lower than this is no hop.
+    pub length: Option<f64>,
+    /// The book's e1, in m/s: at rest, a ball is slower.
+    pub speed: Option<f64>,
+    /// The book's e2, in m: at rest, a ball is nearer to the surface.
+    pub distance: Option<f64>,
+    /// The book's e3 per mass, in m/s^2: at rest, a ball is pulled off the surface less.
+    pub force: Option<f64>,
+}
+
+/// How flights are computed.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a table such as { integrator = \"rk4\", step = 0.01 }")]
+pub struct MethodTable {
+    /// The integrator.
+    pub integrator: Integrator,
+    /// The time step in s of `euler`, `semi-implicit-euler` and `rk4`.
+    pub step: Option<f64>,
+    /// The error that `adaptive` allows per step, relative to the size of the motion.
+    pub tolerance: Option<f64>,
+}
+
+/// The integrators.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case", expecting = "the name of an integrator")]
+pub enum Integrator {
+    /// Straight lines and parabolas in closed form; only under constant acceleration.
+    Exact,
+    /// The chapter's explicit Euler method, of order 1.
+    Euler,
+    /// Velocity first, then position: order 1.
+    SemiImplicitEuler,
+    /// The classical Runge-Kutta method, of order 4.
+    Rk4,
+    /// Runge-Kutta of orders 5 and 4 that chooses its steps.
+    Adaptive,
+}
