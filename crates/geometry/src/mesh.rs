@@ -163,14 +163,6 @@ impl Mesh {
         Self::assemble(vertices, faces, Normals::Shared(normal), topology)
     }
 
-    /// The triangles of `polygon`, as one planar surface: its diagonals are [`Fold::Flat`], its normal is that of every face.
-    pub fn from_polygon(polygon: &Polygon) -> Self {
-        let faces: Vec<[u32; 3]> = polygon.triangulate().into_iter().map(|t| t.map(|i| i as u32)).collect();
-        let mut topology = Topology::of(polygon.vertices().len(), &faces);
-        planar_folds(&mut topology);
-        Self::assemble(polygon.vertices().to_vec(), faces, Normals::Shared(polygon.normal()), topology)
-    }
-
     fn assemble(vertices: Vec<Point3<f64>>, faces: Vec<[u32; 3]>, normals: Normals, topology: Topology) -> Self {
         let bvh = Bvh::build_by(faces.len(), |f| Aabb::of_points(&corners(&vertices, &faces[f])));
         let vertex_faces = VertexFaces::of(vertices.len(), &faces);
