@@ -465,10 +465,10 @@ impl<O: Observer> Walk<'_, O> {
         }
     }
 
-    /// Where the step first leaves the region of a lasting contact.
+    /// Where the step first leaves the region of a lasting contact, and which of the lasting ones that is.
     fn exit(&mut self, step: &Step) -> Option<(f64, usize, RegionBound)> {
         let mut first: Option<(f64, usize, RegionBound)> = None;
-        for (i, contact) in self.contacts.iter().enumerate().filter(|(_, c)| c.lasting) {
+        for (i, contact) in self.contacts.iter().filter(|c| c.lasting).enumerate() {
             if let Some((f, bound)) = self.obstacles.exit(step, contact, &mut self.counters)
                 && first.is_none_or(|(best, ..)| f < best)
             {
@@ -480,7 +480,7 @@ impl<O: Observer> Walk<'_, O> {
 
     /// The neighbouring place takes over.
     fn cross(&mut self, contact: usize, bound: &RegionBound) {
-        let contact = &mut self.contacts[contact];
+        let Some(contact) = self.contacts.iter_mut().filter(|c| c.lasting).nth(contact) else { return };
         let foot = self.obstacles.mesh(contact.surface).and_then(|m| m.foot(bound.next, &self.state.position));
         if let Some((_, normal)) = foot {
             contact.site = Some(bound.next);
