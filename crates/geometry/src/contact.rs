@@ -9,7 +9,7 @@
 use crate::clearance::{Clearance, Entry};
 use crate::closest::{Feature, closest_point};
 use crate::path::Path;
-use crate::rounding::{UNIT_ROUNDOFF, contact_bound};
+use crate::rounding::{UNIT_ROUNDOFF, contact_bound, hold_bound};
 use nalgebra::{Point3, Vector3};
 
 /// A plane the ball is known to touch at the start of its path: the contact it just had, or has.
@@ -67,8 +67,9 @@ pub fn first_contact(
     let bound_at = |f: f64| contact_bound(size + path.reach(f));
 
     let mut f = from;
+    let held = hold_bound(path.start().coords.amax().max(ball.radius), size);
     for hold in ball.holds {
-        if farthest_along(&corners, &hold.normal) + ball.radius <= bound_at(0.0) {
+        if farthest_along(&corners, &hold.normal) + ball.radius <= held {
             f = hold.until.max(f);
         }
     }

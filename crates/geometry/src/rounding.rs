@@ -147,6 +147,16 @@ pub fn contact_bound(extent: f64) -> f64 {
     16.0 * UNIT_ROUNDOFF * extent
 }
 
+/// How far a corner of a face that is touched may seem to stand out of the plane that is held, as computed: `coordinate` is the largest
+/// |coordinate| of the centre or the radius, `size` the largest distance that enters, both in m.
+///
+/// The centre was put on the plane to a rounding of each of its coordinates, sqrt(3) u, and of the product that put it there; 16 u
+/// `coordinate` is given. The normal is off by [`NORMAL_BOUND`] in each component, which lifts a corner at `size` by sqrt(3) times that; the
+/// rest is [`contact_bound`].
+pub fn hold_bound(coordinate: f64, size: f64) -> f64 {
+    position_bound(coordinate) + 2.0 * NORMAL_BOUND * size + contact_bound(size)
+}
+
 /// The radius in m that stands for a point against a mesh whose largest |coordinate| is `farthest`: 2^14 units of
 /// roundoff, so that the centre stays on its own side whatever the rounding of its position (64 units), and so that what the ball
 /// touches to within that rounding has normals within sqrt(2 64 / 2^14), a twelfth of a radian.

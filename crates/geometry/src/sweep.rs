@@ -149,7 +149,12 @@ impl Mesh {
             let local = self.triangle(face).map(|v| Point3::from(v - centre));
             let closest = closest_point(&local, &Point3::origin());
             if closest.offset.norm() <= reach {
-                found.push((self.site(face, closest.feature), closest.offset));
+                let site = match closest.feature {
+                    // Rounding found the edge: in a fold that rises towards the ball, it is the face that is touched.
+                    Feature::Edge(edge) if self.rises(face, edge, &closest.offset) => Site::Face(face),
+                    feature => self.site(face, feature),
+                };
+                found.push((site, closest.offset));
             }
         });
         found.sort_by_key(|(site, _)| *site);
@@ -160,6 +165,13 @@ impl Mesh {
             .filter(|(site, _)| !hidden(site))
             .filter_map(|&(site, away)| self.normal_at(site, &away).map(|normal| Touch { site, normal }))
             .collect()
+    }
+
+    /// Whether the fold at `edge` of `face` is hollow on the side that `away` points to.
+    fn rises(&self, face: u32, edge: u8, away: &Vector3<f64>) -> bool {
+        let fold = self.fold(face, edge.into());
+        let front = self.normal(face).is_some_and(|n| n.dot(away) >= 0.0);
+        (if front { fold } else { fold.from_back() }) == Fold::Concave
     }
 
     /// The one name of a feature of `face`.
