@@ -21,7 +21,7 @@ use crate::observer::{Observer, Segment};
 use crate::plan::Plan;
 use crate::response::respond;
 use crate::sliding::{Balance, Carrier, Slide, slide};
-use crate::tolerance::{EVENT_BUDGET, MAX_STANDSTILL, SLIDING_TOLERANCE, least_hop, touch_distance};
+use crate::tolerance::{EVENT_BUDGET, MAX_STANDSTILL, PATIENCE, SLIDING_TOLERANCE, least_hop, touch_distance};
 use carom_geometry::clearance::Entry;
 use carom_geometry::sweep::{Bend, RegionBound};
 use nalgebra::Vector3;
@@ -191,7 +191,7 @@ impl<O: Observer> Walk<'_, O> {
         self.contacts = contacts;
         let answered = closing.contains(&true);
         let carried = self.settle();
-        if !answered && !carried && hit.f == 0.0 {
+        if !answered && !carried && (hit.f == 0.0 || !step.exact) {
             // The path closes where the ball does not: the hop is too short for this step.
             self.halvings += 1;
             self.counters.halvings += 1;
@@ -200,7 +200,9 @@ impl<O: Observer> Walk<'_, O> {
 
     /// What counts as touching here.
     fn touch_tolerance(&self, travelled: f64) -> f64 {
-        touch_distance(self.state.position.coords.amax().max(self.forces.ball.radius()), travelled)
+        let here = self.state.position.coords.amax().max(self.forces.ball.radius());
+        // Contact with a face is found to the rounding of its corners as well.
+        touch_distance(here + self.plan.farthest, travelled)
     }
 
     /// Puts the centre back onto the surface it touches, within the rounding bound of its position (R15: explicit, bounded, counted).
@@ -289,7 +291,8 @@ impl<O: Observer> Walk<'_, O> {
         }
         let hop = contact.rate * contact.rate / (2.0 * pressed);
         let resolved = self.integrator.timestep().map_or(0.0, |h| least_hop(pressed, h));
-        pressed > 0.0 && c_r < 1.0 && (contact.rate <= thresholds.speed || hop <= resolved)
+        let ends = c_r < 1.0 || self.standstill > PATIENCE;
+        pressed > 0.0 && ends && (contact.rate <= thresholds.speed || hop <= resolved)
     }
 
     /// The contacts as carriers.

@@ -114,5 +114,8 @@ pub const LEAST_TOLERANCE: f64 = 1.0e-15;
 /// Contacts answered without time passing before the ball's simulation is ended as unresolved.
 pub const MAX_STANDSTILL: u32 = 256;
 
+/// Contacts answered without time passing before bouncing ends whatever the restitution: hops that f64 does not resolve in time are none.
+pub const PATIENCE: u32 = 16;
+
 /// Events of one ball before its simulation is ended: a ball that bounces for ever stops here.
 pub const EVENT_BUDGET: u64 = 10_000_000;

@@ -136,11 +136,20 @@ impl Mesh {
         best
     }
 
-    /// What a ball of `radius` at `centre` touches, to within `tolerance`, in the order of the sites.
+    /// What a ball of `radius` at `centre`, moving along `heading`, touches, to within `tolerance`, in the order of the sites.
     ///
+    /// Where rounding decides between a face and its border, it is what the ball moves to.
     /// An edge counts only where none of its faces is touched itself, and a vertex only where none of its edges and faces is: so
     /// the inner edges of a flat or hollow surface do not show.
-    pub fn touches(&self, centre: &Point3<f64>, radius: f64, tolerance: f64, work: &mut Work) -> Vec<Touch> {
+    pub fn touches(
+        &self,
+        centre: &Point3<f64>,
+        heading: &Vector3<f64>,
+        radius: f64,
+        tolerance: f64,
+        work: &mut Work,
+    ) -> Vec<Touch> {
+        let ahead = Point3::from(heading.try_normalize(0.0).unwrap_or_else(Vector3::zeros) * tolerance);
         let reach = radius + tolerance;
         let mut found: Vec<(Site, Vector3<f64>)> = Vec::new();
         let around = Aabb::of_points(&[*centre]).inflate(reach + position_bound(centre.coords.amax() + reach));
@@ -152,7 +161,9 @@ impl Mesh {
                 let site = match closest.feature {
                     // Rounding found the edge: in a fold that rises towards the ball, it is the face that is touched.
                     Feature::Edge(edge) if self.rises(face, edge, &closest.offset) => Site::Face(face),
-                    feature => self.site(face, feature),
+                    Feature::Face => Site::Face(face),
+                    // Face before edge before vertex.
+                    feature => self.site(face, feature.min(closest_point(&local, &ahead).feature)),
                 };
                 found.push((site, closest.offset));
             }
