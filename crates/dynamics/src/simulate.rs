@@ -21,7 +21,7 @@ use crate::observer::{Observer, Segment};
 use crate::plan::Plan;
 use crate::response::respond;
 use crate::sliding::{Balance, Carrier, Slide, slide};
-use crate::tolerance::{EVENT_BUDGET, MAX_STANDSTILL, PATIENCE, SLIDING_TOLERANCE, least_hop, touch_distance};
+use crate::tolerance::{EVENT_BUDGET, MAX_STANDSTILL, PATIENCE, SLIDING_TOLERANCE, least_hop, rate_rounding, touch_distance};
 use carom_geometry::clearance::Entry;
 use carom_geometry::sweep::{Bend, RegionBound};
 use nalgebra::Vector3;
@@ -77,6 +77,16 @@ struct Settling {
     contact: usize,
 }
 
+/// The part of `v` along all planes with these normals.
+fn along(normals: &[Vector3<f64>], v: Vector3<f64>) -> Vector3<f64> {
+    match normals {
+        [] => v,
+        [n] => v - n * n.dot(&v),
+        [a, b] => a.cross(b).try_normalize(0.0).map_or(v, |t| t * t.dot(&v)),
+        _ => Vector3::zeros(),
+    }
+}
+
 /// One ball on its way.
 struct Walk<'a, O> {
     plan: &'a Plan,
@@ -120,7 +130,8 @@ impl<O: Observer> Walk<'_, O> {
         for _ in 0..self.halvings {
             timestep *= 0.5;
         }
-        let step = self.integrator.step(&self.forces, &self.state, timestep, &mut self.counters);
+        let tangential = self.contacts.iter().any(|c| c.rate == 0.0);
+        let step = self.integrator.step(&self.forces, &self.state, timestep, tangential, &mut self.counters);
         let returns = self.obstacles.returns(&step, &self.contacts, &mut self.counters);
         let hit = self.obstacles.earliest(&step, &self.contacts, &returns, &mut self.counters);
         match hit {
@@ -257,6 +268,13 @@ impl<O: Observer> Walk<'_, O> {
                 settling = Some(Settling { seconds, closing: contact.rate, contact: i });
             }
         }
+        if settling.is_some() && self.drives_into_others(&carrying) {
+            // What hops is not held down where that would press the ball into something else: it flies the hop.
+            settling = None;
+            for (contact, carrying) in self.contacts.iter().zip(&mut carrying) {
+                *carrying &= contact.rate <= 0.0;
+            }
+        }
         let several = carrying.iter().filter(|c| **c).count() > 1;
         if !carrying.contains(&true) {
             self.set_flying(sliding);
@@ -308,16 +326,19 @@ impl<O: Observer> Walk<'_, O> {
             .collect()
     }
 
+    /// Whether taking the ball along the contacts that carry would drive it into one that does not.
+    fn drives_into_others(&self, carrying: &[bool]) -> bool {
+        let contacts = || self.contacts.iter().zip(carrying);
+        let held: Vec<_> = contacts().filter(|(_, carrying)| **carrying).map(|(c, _)| c.normal).collect();
+        let v = along(&held, self.state.velocity);
+        let rounding = rate_rounding(self.state.velocity.norm());
+        contacts().any(|(c, carrying)| !carrying && c.normal.dot(&v) < -rounding)
+    }
+
     /// Takes from the velocity what would leave or enter a lasting contact.
     fn make_tangential(&mut self) {
         let lasting: Vec<Vector3<f64>> = self.contacts.iter().filter(|c| c.lasting).map(|c| c.normal).collect();
-        let v = self.state.velocity;
-        self.state.velocity = match lasting[..] {
-            [] => v,
-            [n] => v - n * n.dot(&v),
-            [a, b] => a.cross(&b).try_normalize(0.0).map_or(v, |t| t * t.dot(&v)),
-            _ => Vector3::zeros(),
-        };
+        self.state.velocity = along(&lasting, self.state.velocity);
     }
 
     fn set_flying(&mut self, was_sliding: bool) {

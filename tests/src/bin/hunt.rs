@@ -367,7 +367,7 @@ fn main() {
                 let n = run.segments.len();
                 println!("  {n} segments");
                 for (i, s) in run.segments.iter().enumerate() {
-                    if i < 8 || i + 12 > n { println!("  {i} t={} {:?} to {} of {} s, x={:?} v={:?} a={:?}", s.time, s.motion, s.to, s.step.seconds, s.step.path.start(), s.step.velocity[0].data.0[0], (s.step.velocity[1]/s.step.seconds).data.0[0]); }
+                    if i < 8 || i + 12 > n || (12..44).contains(&i) { println!("  {i} t={} {:?} to {} of {} s, x={:?} v={:?} a={:?}", s.time, s.motion, s.to, s.step.seconds, s.step.path.start(), s.step.velocity[0].data.0[0], (s.step.velocity[1]/s.step.seconds).data.0[0]); }
                 }
             }
             if run.segments.len() > 300_000 { continue; }
