@@ -21,7 +21,7 @@ use crate::observer::{Observer, Segment};
 use crate::plan::Plan;
 use crate::response::respond;
 use crate::sliding::{Balance, Carrier, Slide, slide};
-use crate::tolerance::{EVENT_BUDGET, MAX_STANDSTILL, PATIENCE, SLIDING_TOLERANCE, least_hop, rate_rounding, touch_distance};
+use crate::tolerance::{EVENT_BUDGET, MAX_STANDSTILL, PATIENCE, SLIDING_TOLERANCE, least_hop, rate_rounding, time_resolution, touch_distance};
 use carom_geometry::clearance::Entry;
 use carom_geometry::sweep::{Bend, RegionBound};
 use nalgebra::Vector3;
@@ -44,6 +44,7 @@ pub fn simulate(plan: &Plan, ball: &Ball, observer: &mut impl Observer) -> Outco
         settling: None,
         slider: Adaptive::new(SLIDING_TOLERANCE),
         standstill: 0,
+        moved: 0.0,
         halvings: 0,
         events: 0,
         ending: None,
@@ -100,8 +101,10 @@ struct Walk<'a, O> {
     settling: Option<Settling>,
     /// Integrates what slides on no straight line.
     slider: Adaptive,
-    /// Answers in a row that took no time.
+    /// Answers in a row that took no time to speak of.
     standstill: u32,
+    /// Since when, in s.
+    moved: f64,
     /// How often the timestep is halved because the path closes where the ball does not.
     halvings: u32,
     events: u64,
@@ -130,7 +133,8 @@ impl<O: Observer> Walk<'_, O> {
         for _ in 0..self.halvings {
             timestep *= 0.5;
         }
-        let tangential = self.contacts.iter().any(|c| c.rate == 0.0);
+        let rounding = rate_rounding(self.state.velocity.norm());
+        let tangential = self.contacts.iter().any(|c| c.rate <= rounding);
         let step = self.integrator.step(&self.forces, &self.state, timestep, tangential, &mut self.counters);
         let returns = self.obstacles.returns(&step, &self.contacts, &mut self.counters);
         let hit = self.obstacles.earliest(&step, &self.contacts, &returns, &mut self.counters);
@@ -157,8 +161,11 @@ impl<O: Observer> Walk<'_, O> {
             self.observer.segment(&Segment { time, step: *step, to, motion });
         }
         self.state = step.at(to);
-        if self.clock.advance(step.time(to)) {
+        self.clock.advance(step.time(to));
+        let now = self.clock.now();
+        if now - self.moved > time_resolution(now) {
             self.standstill = 0;
+            self.moved = now;
         } else {
             self.standstill += 1;
             if self.standstill > MAX_STANDSTILL {
@@ -258,15 +265,26 @@ impl<O: Observer> Walk<'_, O> {
         let carriers = self.carriers();
         let mut carrying = [false; crate::contacts::MAX_CONTACTS];
         let mut settling = None;
-        for (i, carrier) in carriers.iter().enumerate() {
-            let contact = &carrier.contact;
-            let pressed = -contact.normal.dot(&a) - carrier.centripetal(&self.state.velocity);
-            carrying[i] = self.ends_bouncing(contact, pressed);
-            if carrying[i] && contact.rate > 0.0 {
+        // A contact may press the ball into another that its weight alone would not press it into: asked again, until no other carries.
+        let mut free = a;
+        let mut more = true;
+        while std::mem::take(&mut more) {
+            for (i, carrier) in carriers.iter().enumerate() {
+                if carrying[i] {
+                    continue;
+                }
+                let contact = &carrier.contact;
+                let pressed = -contact.normal.dot(&free) - carrier.centripetal(&self.state.velocity);
+                carrying[i] = self.ends_bouncing(contact, pressed);
+                more |= carrying[i];
                 let c_r = self.plan.surfaces[contact.surface].material.restitution.coefficient();
-                let seconds = 2.0 * contact.rate / (pressed * (1.0 - c_r));
-                settling = Some(Settling { seconds, closing: contact.rate, contact: i });
+                if carrying[i] && contact.rate > 0.0 && c_r < 1.0 {
+                    let seconds = 2.0 * contact.rate / (pressed * (1.0 - c_r));
+                    settling = Some(Settling { seconds, closing: contact.rate, contact: i });
+                }
             }
+            let held: Vec<Carrier> = carriers.iter().zip(&carrying).filter(|(_, c)| **c).map(|(c, _)| *c).collect();
+            free = Balance::of(&a, &held, &self.state).free;
         }
         if settling.is_some() && self.drives_into_others(&carrying) {
             // What hops is not held down where that would press the ball into something else: it flies the hop.
