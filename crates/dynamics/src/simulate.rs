@@ -19,7 +19,7 @@ use crate::integrators::adaptive::Adaptive;
 use crate::integrators::{Integrator, Step};
 use crate::observer::{Observer, Segment};
 use crate::plan::Plan;
-use crate::response::respond;
+use crate::response::{changed_rate, respond};
 use crate::sliding::{Balance, Carrier, Slide, slide};
 use crate::tolerance::{EVENT_BUDGET, MAX_STANDSTILL, PATIENCE, SLIDING_TOLERANCE, least_hop, rate_rounding, time_resolution, touch_distance};
 use carom_geometry::clearance::Entry;
@@ -304,7 +304,11 @@ impl<O: Observer> Walk<'_, O> {
                 contact.rate = 0.0;
             }
         }
+        let before = self.state.velocity;
         self.make_tangential();
+        for contact in self.contacts.iter_mut().filter(|c| !c.lasting) {
+            contact.rate = changed_rate(contact, &before, &self.state.velocity);
+        }
         self.motion = Motion::Sliding;
         self.halvings = 0;
         match settling {
