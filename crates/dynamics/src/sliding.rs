@@ -12,7 +12,7 @@ use crate::forces::Forces;
 use crate::integrators::adaptive::Adaptive;
 use crate::integrators::{Step, exact};
 use crate::support::{Projection, project_offset};
-use crate::tolerance::parallel;
+use crate::tolerance::{parallel, rate_rounding};
 use carom_geometry::sweep::Bend;
 use nalgebra::{Point3, Vector3};
 
@@ -78,7 +78,10 @@ impl Balance {
                 ContactFriction::Sticking => sticks = true,
             }
         }
-        Self { free: loads.velocity, friction, sticks, loads }
+        // What rounding leaves of a weight that is carried moves nothing.
+        let noise = loads.velocity.norm() <= rate_rounding(a.norm());
+        let free = if noise { Vector3::zeros() } else { loads.velocity };
+        Self { free, friction, sticks, loads }
     }
 
     /// Whether the ball, once it stands, stays: |F_t| <= mu |F_n|, compared by squares. No force rests on any surface.
@@ -142,10 +145,12 @@ pub fn slide(
     Slide { step, stops: false }
 }
 
-/// On a curve, the time in which the ball moves by no more than a sixteenth of the radius.
+/// On a curve, the time in which the ball moves by no more than a sixteenth of the radius across it.
 fn longest_step(carrier: &Carrier, state: &State, a: &Vector3<f64>) -> f64 {
-    match carrier.bend {
-        Bend::Flat => f64::INFINITY,
-        _ => carrier.radius / (16.0 * (state.velocity.norm() + (a.norm() * carrier.radius).sqrt())),
-    }
+    let across = |v: &Vector3<f64>| match carrier.bend {
+        Bend::Flat => 0.0,
+        Bend::Around { along, .. } => (v - along * along.dot(v)).norm(),
+        Bend::About { .. } => v.norm(),
+    };
+    carrier.radius / (16.0 * (across(&state.velocity) + (across(a) * carrier.radius).sqrt()))
 }
