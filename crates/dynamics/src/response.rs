@@ -138,7 +138,7 @@ mod tests {
         let n = Vector3::new(0.6, 0.0, 0.8);
         let v = 3.0 * Vector3::y() - 2.0 * n;
         let after = answer(v, &[n], material(0.5, Friction::linear(0.5).unwrap()));
-        assert!((after - (1.5 * Vector3::y() + 1.0 * n)).norm() < 1e-15);
+        assert!((after - (Vector3::y() * 1.5 + n)).norm() < 1e-15);
     }
 
     #[test]

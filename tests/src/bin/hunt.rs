@@ -333,6 +333,9 @@ fn main() {
             let Some((scene, world)) = scene(family, seed, &store) else { continue };
             let plan = match Plan::new(&scene) { Ok(p) => p, Err(e) => { tally.entry(format!("refused {e}")).or_default().push(seed); continue } };
             ran += 1;
+            if show {
+                println!("{:?} {:?} {:?} {:?}", scene.method, scene.drag, scene.gravity, scene.balls);
+            }
             let began = Instant::now();
             // A thread of its own: a ball that never ends is left to itself.
             let (send, receive) = std::sync::mpsc::channel();
