@@ -5,7 +5,7 @@ use carom_tests::stage::{Run, Stage, smooth};
 use nalgebra::{Point3, Vector3};
 
 /// More impacts than this take a debug build too long.
-const FEASIBLE: f64 = 200_000.0;
+const FEASIBLE: f64 = 320_000.0;
 
 #[test]
 fn r12_a_ball_in_a_box_of_six_planes() {
@@ -81,7 +81,7 @@ fn r12_a_right_angled_wedge_is_two_bouncers() {
         }
     }
     Worst::settle_all([places, speeds]);
-    assert_eq!(skipped, 5, "rows beyond {FEASIBLE} hits");
+    assert_eq!(skipped, 6, "rows beyond {FEASIBLE} hits");
 }
 
 #[test]
@@ -161,5 +161,5 @@ fn r12_a_thin_wedge_is_left_after_the_exact_number_of_hits() {
         }
     }
     Worst::settle_all([times, distances, speeds]);
-    assert_eq!(skipped, 1, "wedges with more than {FEASIBLE} hits");
+    assert_eq!(skipped, 0, "wedges with more than {FEASIBLE} hits");
 }
