@@ -172,8 +172,10 @@ impl Summary {
     /// For the eye: a few lines.
     pub fn text(&self) -> String {
         let mut text = String::new();
-        // A string takes everything that is written to it.
-        let mut line = |name: &str, what: String| drop(writeln!(text, "{name:<9} {what}"));
+        let mut line = |name: &str, what: String| {
+            // A string takes everything that is written to it.
+            let _ = writeln!(text, "{name:<9} {what}");
+        };
         line("balls", count(self.balls as u64));
         line("impacts", count(self.impacts));
         let off = match self.off_the_map {

@@ -1,7 +1,7 @@
 //! Faces of more than three corners, made triangles.
 
 use carom_geometry::error::PolygonError;
-use carom_geometry::normal::vector_area;
+use carom_geometry::normal::unit_normal;
 use carom_geometry::polygon::Polygon;
 use carom_geometry::projection::DominantAxis;
 use carom_geometry::quad::Quad;
@@ -50,8 +50,8 @@ fn quad(points: [Point3<f64>; 4]) -> Result<Vec<[usize; 3]>, PolygonError> {
 fn polygon(points: &[Point3<f64>]) -> Result<Vec<[usize; 3]>, PolygonError> {
     match Polygon::new(points.to_vec()) {
         Err(PolygonError::NotPlanar { .. }) => {
-            let area = vector_area(points).ok_or(PolygonError::Collinear)?;
-            let axis = DominantAxis::of(&area.normal).index();
+            let normal = unit_normal(points).ok_or(PolygonError::Collinear)?;
+            let axis = DominantAxis::of(&normal).index();
             let mut flat = points.to_vec();
             flat.iter_mut().for_each(|p| p[axis] = 0.0);
             Ok(Polygon::new(flat)?.triangulate())
