@@ -10,7 +10,7 @@ use arrayvec::ArrayVec;
 use carom_geometry::clearance::{Clearance, Entry};
 use carom_geometry::contact::{Hold, MovingBall};
 use carom_geometry::plane::Side;
-use carom_geometry::sweep::Work;
+use carom_geometry::sweep::{Bend, RegionBound, Work};
 use nalgebra::{Point3, Vector3};
 
 /// The earliest collision of a step.
@@ -25,32 +25,18 @@ pub struct Hit {
 }
 
 /// When a contact that the ball has is entered again: clearance 0 at the start, changing with its exact rate.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Return {
     /// For the mesh queries.
-    pub hold: Hold,
+    hold: Hold,
     /// Where, and at what slope.
     pub entry: Entry,
+    /// Faces at the contact, and the f before which the ball cannot touch them again.
+    free: Option<(usize, Vec<u32>, f64)>,
 }
 
 /// The returns of one step, one for each contact.
 pub type Returns = ArrayVec<Return, MAX_CONTACTS>;
-
-/// When the path of `step` returns to each of `contacts`; never to a lasting one, along which it moves.
-pub fn returns(step: &Step, contacts: &[Contact], counters: &mut Counters) -> Returns {
-    contacts
-        .iter()
-        .map(|contact| {
-            if contact.lasting {
-                return Return { hold: Hold { normal: contact.normal, until: f64::INFINITY }, entry: Entry::Never };
-            }
-            counters.clearances += 1;
-            let entry = leaving(step, contact).first_entry(0.0, step.to);
-            let until = entry.f().unwrap_or(f64::INFINITY);
-            Return { hold: Hold { normal: contact.normal, until }, entry }
-        })
-        .collect()
-}
 
 /// The clearance from a contact along the step: 0 now by definition, and its slope the contact's own rate (plus what a path that
 /// does not begin with the velocity adds).
@@ -64,6 +50,32 @@ fn leaving(step: &Step, contact: &Contact) -> Clearance {
         c[1] = contact.rate * step.seconds + contact.normal.dot(&kick);
     }
     Clearance::new(c)
+}
+
+/// The f up to which the path cannot come back to the edge or vertex, bent as `bend`, that it has just left tangentially from distance
+/// `radius`.
+///
+/// For a parabola |w(f)|^2 - r^2, with w the part across the edge, is a quartic, solved like any clearance. A path of higher degree follows
+/// its parabola closely enough while its further terms take less than a quarter of what the distance gains.
+fn leaves_until(step: &Step, bend: Bend, radius: f64) -> f64 {
+    let (point, across): (Point3<f64>, Box<dyn Fn(Vector3<f64>) -> Vector3<f64>>) = match bend {
+        Bend::Flat => return 0.0,
+        Bend::Around { point, along } => (point, Box::new(move |w| w - along * along.dot(&w))),
+        Bend::About { point } => (point, Box::new(|w| w)),
+    };
+    let zero = Vector3::zeros();
+    let term = |k: usize| step.path.terms().get(k).copied().unwrap_or(zero);
+    let w = across(step.path.start() - point).normalize() * radius;
+    let (b, c) = (across(term(0)), across(term(1)));
+    // The ball touches and leaves tangentially: the terms of order 0 and 1 are zero.
+    let gain = b.norm_squared() + 2.0 * w.dot(&c);
+    let squared = Clearance::new([0.0, 0.0, gain, 2.0 * b.dot(&c), c.norm_squared()]);
+    let until = match squared.first_entry(0.0, step.to) {
+        Entry::Never => f64::INFINITY,
+        Entry::At { f, .. } => f,
+    };
+    let further = term(2).norm() + term(3).norm();
+    if further == 0.0 { until } else { until.min(gain / (8.0 * radius * further)) }
 }
 
 /// One ball among the surfaces of a plan.
@@ -97,14 +109,66 @@ impl<'a> Obstacles<'a> {
         if contact.site.is_some() { self.mesh_radius } else { self.radius }
     }
 
-    /// The earliest collision of the step: over all surfaces, the smallest f at which the clearance is <= 0 and falling. Faces for
-    /// which `skip` holds are left out.
+    /// When the path of `step` returns to each of `contacts`; never to a lasting one, along which it moves.
+    pub fn returns(&self, step: &Step, contacts: &[Contact], counters: &mut Counters) -> Returns {
+        contacts
+            .iter()
+            .map(|contact| {
+                let normal = contact.normal;
+                if contact.lasting {
+                    let hold = Hold { normal, until: f64::INFINITY };
+                    return Return { hold, entry: Entry::Never, free: self.free(contact, f64::INFINITY) };
+                }
+                counters.clearances += 1;
+                let entry = leaving(step, contact).first_entry(0.0, step.to);
+                let until = entry.f().unwrap_or(f64::INFINITY);
+                let free = match self.bend(contact) {
+                    bend if bend != Bend::Flat && contact.rate == 0.0 => {
+                        let exit = self.exit(step, contact, counters).map_or(f64::INFINITY, |(f, _)| f);
+                        self.free(contact, leaves_until(step, bend, self.radius_at(contact)).min(exit))
+                    }
+                    _ => None,
+                };
+                Return { hold: Hold { normal, until }, entry, free }
+            })
+            .collect()
+    }
+
+    /// The faces at an edge or vertex, with the f until which the bounds of its region watch over them.
+    fn free(&self, contact: &Contact, until: f64) -> Option<(usize, Vec<u32>, f64)> {
+        Some((contact.surface, self.mesh(contact.surface)?.faces_at(contact.site?), until))
+    }
+
+    /// The shape that the centre follows along a contact.
+    pub fn bend(&self, contact: &Contact) -> Bend {
+        match (contact.site, self.mesh(contact.surface)) {
+            (Some(site), Some(mesh)) => mesh.bend(site),
+            _ => Bend::Flat,
+        }
+    }
+
+    /// Where the step first leaves the region of a contact.
+    pub fn exit(&self, step: &Step, contact: &Contact, counters: &mut Counters) -> Option<(f64, RegionBound)> {
+        let mut first: Option<(f64, RegionBound)> = None;
+        for bound in self.mesh(contact.surface)?.region(contact.site?) {
+            counters.clearances += 1;
+            let inward = -bound.outward;
+            let gap = inward.dot(&(step.path.start() - bound.point));
+            if let Entry::At { f, .. } = step.path.clearance(gap, &inward).first_entry(0.0, step.to)
+                && first.is_none_or(|(best, _)| f < best)
+            {
+                first = Some((f, bound));
+            }
+        }
+        first
+    }
+
+    /// The earliest collision of the step: over all surfaces, the smallest f at which the clearance is <= 0 and falling.
     pub fn earliest(
         &self,
         step: &Step,
         contacts: &[Contact],
         returns: &Returns,
-        skip: impl Fn(usize, u32) -> bool,
         counters: &mut Counters,
     ) -> Option<Hit> {
         let mut earliest: Option<Hit> = None;
@@ -130,7 +194,11 @@ impl<'a> Obstacles<'a> {
         for (surface, mesh) in &self.plan.meshes {
             let to = earliest.map_or(step.to, |hit| hit.f);
             let mut work = Work::default();
-            let found = mesh.first_contact(&ball, to, |face| skip(*surface, face), &mut work);
+            let free_until = |face: u32| {
+                let of_this = returns.iter().filter_map(|r| r.free.as_ref()).filter(|(s, ..)| s == surface);
+                of_this.filter(|(_, faces, _)| faces.contains(&face)).map(|(.., f)| *f).fold(0.0, f64::max)
+            };
+            let found = mesh.first_contact(&ball, to, free_until, &mut work);
             counters.add(&work);
             if let Some(found) = found
                 && earliest.is_none_or(|hit| found.f < hit.f)

@@ -28,7 +28,6 @@ pub struct Plan {
     pub(crate) balls: Vec<Ball>,
     pub(crate) rest: RestThresholds,
     pub(crate) method: Method,
-    pub(crate) farthest: f64,
     pub(crate) point_radius: f64,
 }
 
@@ -88,7 +87,6 @@ impl Plan {
             balls: scene.balls.clone(),
             rest: scene.rest.unwrap_or(RestThresholds::Length(default_rest_length(size.extent, size.farthest))),
             method,
-            farthest: size.farthest,
             point_radius: point_radius(size.farthest),
         })
     }

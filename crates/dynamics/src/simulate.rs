@@ -10,17 +10,18 @@
 
 use crate::body::{Ball, State};
 use crate::clock::Clock;
-use crate::collision::{Hit, Obstacles, Returns, returns};
+use crate::collision::{Hit, Obstacles, Returns};
 use crate::contacts::{Contact, Contacts};
 use crate::counters::Counters;
 use crate::events::{Ending, Event, EventKind, Motion, Outcome};
 use crate::forces::Forces;
+use crate::integrators::adaptive::Adaptive;
 use crate::integrators::{Integrator, Step};
 use crate::observer::{Observer, Segment};
 use crate::plan::Plan;
 use crate::response::respond;
 use crate::sliding::{Balance, Carrier, Slide, slide};
-use crate::tolerance::{EVENT_BUDGET, MAX_STANDSTILL, least_hop, touch_distance};
+use crate::tolerance::{EVENT_BUDGET, MAX_STANDSTILL, SLIDING_TOLERANCE, least_hop, touch_distance};
 use carom_geometry::clearance::Entry;
 use carom_geometry::sweep::{Bend, RegionBound};
 use nalgebra::Vector3;
@@ -41,6 +42,7 @@ pub fn simulate(plan: &Plan, ball: &Ball, observer: &mut impl Observer) -> Outco
         contacts: Contacts::new(),
         motion: Motion::Flying,
         settling: None,
+        slider: Adaptive::new(SLIDING_TOLERANCE),
         standstill: 0,
         halvings: 0,
         events: 0,
@@ -86,6 +88,8 @@ struct Walk<'a, O> {
     contacts: Contacts,
     motion: Motion,
     settling: Option<Settling>,
+    /// Integrates what slides on no straight line.
+    slider: Adaptive,
     /// Answers in a row that took no time.
     standstill: u32,
     /// How often the timestep is halved because the path closes where the ball does not.
@@ -117,8 +121,8 @@ impl<O: Observer> Walk<'_, O> {
             timestep *= 0.5;
         }
         let step = self.integrator.step(&self.forces, &self.state, timestep, &mut self.counters);
-        let returns = returns(&step, &self.contacts, &mut self.counters);
-        let hit = self.obstacles.earliest(&step, &self.contacts, &returns, |_, _| false, &mut self.counters);
+        let returns = self.obstacles.returns(&step, &self.contacts, &mut self.counters);
+        let hit = self.obstacles.earliest(&step, &self.contacts, &returns, &mut self.counters);
         match hit {
             None => {
                 self.travel(&step, step.to, Motion::Flying);
@@ -243,7 +247,7 @@ impl<O: Observer> Walk<'_, O> {
         let mut settling = None;
         for (i, carrier) in carriers.iter().enumerate() {
             let contact = &carrier.contact;
-            let pressed = -contact.normal.dot(&a);
+            let pressed = -contact.normal.dot(&a) - carrier.centripetal(&self.state.velocity);
             carrying[i] = self.ends_bouncing(contact, pressed);
             if carrying[i] && contact.rate > 0.0 {
                 let c_r = self.plan.surfaces[contact.surface].material.restitution.coefficient();
@@ -294,10 +298,7 @@ impl<O: Observer> Walk<'_, O> {
             .iter()
             .map(|contact| Carrier {
                 contact: *contact,
-                bend: match (contact.site, self.obstacles.mesh(contact.surface)) {
-                    (Some(site), Some(mesh)) => mesh.bend(site),
-                    _ => Bend::Flat,
-                },
+                bend: self.obstacles.bend(contact),
                 friction: self.plan.surfaces[contact.surface].material.friction.in_contact(),
                 radius: self.obstacles.radius_at(contact),
             })
@@ -380,7 +381,10 @@ impl<O: Observer> Walk<'_, O> {
         }
         let remaining = self.clock.until(self.plan.duration);
         let Slide { step, stops } = match self.settling {
-            None => slide(&self.forces, &self.state, &carriers, &balance, remaining, &mut self.counters),
+            None => {
+                let slider = &mut self.slider;
+                slide(slider, &self.forces, &self.state, &carriers, &balance, remaining, &mut self.counters)
+            }
             // The hops are too low to see, and friction acts at their ends: a flight along the surface.
             Some(settling) => {
                 self.counters.paths += 1;
@@ -391,13 +395,14 @@ impl<O: Observer> Walk<'_, O> {
         };
         let motion = if self.settling.is_some() { Motion::Flying } else { Motion::Sliding };
         let exit = self.exit(&step);
-        let returns = returns(&step, &self.contacts, &mut self.counters);
-        let around = self.faces_around();
-        let skip = |surface: usize, face: u32| around.iter().any(|(s, faces)| *s == surface && faces.contains(&face));
-        let hit = self.obstacles.earliest(&step, &self.contacts, &returns, skip, &mut self.counters);
+        let returns = self.obstacles.returns(&step, &self.contacts, &mut self.counters);
+        let hit = self.obstacles.earliest(&step, &self.contacts, &returns, &mut self.counters);
         let hit = hit.filter(|hit| exit.is_none_or(|(f, ..)| hit.f < f));
         let to = hit.map(|hit| hit.f).or(exit.map(|(f, ..)| f)).unwrap_or(step.to);
         self.travel(&step, to, motion);
+        if to > 0.0 {
+            self.leave_behind();
+        }
         self.hold_to_surface();
         match (hit, exit) {
             (Some(hit), _) => {
@@ -419,6 +424,14 @@ impl<O: Observer> Walk<'_, O> {
                     self.clock.set(self.plan.duration);
                 }
             }
+        }
+    }
+
+    /// Forgets what the ball touched where it was, but for what it moves along.
+    fn leave_behind(&mut self) {
+        self.contacts.retain(|c| c.lasting);
+        if let Some(settling) = &mut self.settling {
+            settling.contact = 0;
         }
     }
 
@@ -456,16 +469,10 @@ impl<O: Observer> Walk<'_, O> {
     fn exit(&mut self, step: &Step) -> Option<(f64, usize, RegionBound)> {
         let mut first: Option<(f64, usize, RegionBound)> = None;
         for (i, contact) in self.contacts.iter().enumerate().filter(|(_, c)| c.lasting) {
-            let (Some(site), Some(mesh)) = (contact.site, self.obstacles.mesh(contact.surface)) else { continue };
-            for bound in mesh.region(site) {
-                self.counters.clearances += 1;
-                let inward = -bound.outward;
-                let gap = inward.dot(&(step.path.start() - bound.point));
-                if let Entry::At { f, .. } = step.path.clearance(gap, &inward).first_entry(0.0, step.to)
-                    && first.is_none_or(|(best, ..)| f < best)
-                {
-                    first = Some((f, i, bound));
-                }
+            if let Some((f, bound)) = self.obstacles.exit(step, contact, &mut self.counters)
+                && first.is_none_or(|(best, ..)| f < best)
+            {
+                first = Some((f, i, bound));
             }
         }
         first
@@ -495,19 +502,10 @@ impl<O: Observer> Walk<'_, O> {
         }
         let lasting: Contacts = self.contacts.iter().filter(|c| c.lasting).copied().collect();
         for contact in &lasting {
-            let slack = crate::tolerance::SLIDING_TOLERANCE * self.obstacles.radius_at(contact);
+            let slack = SLIDING_TOLERANCE * self.obstacles.radius_at(contact);
             self.correct(contact, self.touch_tolerance(0.0).max(slack));
         }
         self.make_tangential();
-    }
-
-    /// The faces at the edge or vertex that the ball rolls over: the bounds of its region watch over them.
-    fn faces_around(&self) -> Vec<(usize, Vec<u32>)> {
-        let around = |contact: &Contact| {
-            let (site, mesh) = (contact.site?, self.obstacles.mesh(contact.surface)?);
-            Some((contact.surface, mesh.faces_at(site)))
-        };
-        self.contacts.iter().filter(|c| c.lasting).filter_map(around).collect()
     }
 
     /// Rests to the end.

@@ -12,7 +12,7 @@ use crate::forces::Forces;
 use crate::integrators::adaptive::Adaptive;
 use crate::integrators::{Step, exact};
 use crate::support::{Projection, project_offset};
-use crate::tolerance::{SLIDING_TOLERANCE, parallel};
+use crate::tolerance::parallel;
 use carom_geometry::sweep::Bend;
 use nalgebra::{Point3, Vector3};
 
@@ -44,7 +44,7 @@ impl Carrier {
     }
 
     /// The acceleration towards it, in m/s^2, that following its curve takes at `velocity`: v^2 / r across an edge.
-    fn centripetal(&self, velocity: &Vector3<f64>) -> f64 {
+    pub fn centripetal(&self, velocity: &Vector3<f64>) -> f64 {
         match self.bend {
             Bend::Flat => 0.0,
             Bend::Around { along, .. } => (velocity - along * along.dot(velocity)).norm_squared() / self.radius,
@@ -101,8 +101,10 @@ pub struct Slide {
     pub stops: bool,
 }
 
-/// The motion of a ball in `state` on `carriers`, whose `balance` it is, for at most `remaining` seconds.
+/// The motion of a ball in `state` on `carriers`, whose `balance` it is, for at most `remaining` seconds; `integrator` takes the motions that
+/// have no closed form.
 pub fn slide(
+    integrator: &mut Adaptive,
     forces: &Forces,
     state: &State,
     carriers: &[Carrier],
@@ -128,7 +130,7 @@ pub fn slide(
         return Slide { step: exact::step(state, a, remaining), stops: false };
     }
     let longest = carriers.iter().map(|c| longest_step(c, state, &balance.free)).fold(remaining, f64::min);
-    let step = Adaptive::new(SLIDING_TOLERANCE).step(state, longest, |s| {
+    let step = integrator.step(state, longest, |s| {
         let a = forces.acceleration(s, counters);
         let balance = Balance::of(&a, carriers, s);
         let direction = s.velocity.try_normalize(0.0).unwrap_or_else(Vector3::zeros);

@@ -21,7 +21,11 @@ impl Aabb {
 
     /// The least box with all of `points`; empty without any. A NaN coordinate is ignored.
     pub fn of_points<'a>(points: impl IntoIterator<Item = &'a Point3<f64>>) -> Self {
-        points.into_iter().fold(Self::empty(), |b, p| Self { min: b.min.inf(p), max: b.max.sup(p) })
+        // `f64::min` and `max` leave a NaN out; nalgebra's `inf` and `sup` promise nothing about it.
+        points.into_iter().fold(Self::empty(), |b, p| Self {
+            min: b.min.coords.zip_map(&p.coords, f64::min).into(),
+            max: b.max.coords.zip_map(&p.coords, f64::max).into(),
+        })
     }
 
     /// The corner with the least coordinates; all +infinity for the empty box.
@@ -87,6 +91,9 @@ mod tests {
         assert_eq!((*unit().min(), *unit().max()), (Point3::origin(), Point3::new(1.0, 1.0, 1.0)));
         assert_eq!(unit().extent(), Vector3::new(1.0, 1.0, 1.0));
         assert_eq!(unit().centre(), Point3::new(0.5, 0.5, 0.5));
+        let nan = Point3::new(f64::NAN, 7.0, f64::NAN);
+        let with = Aabb::of_points(&[nan, Point3::origin(), nan]);
+        assert_eq!((*with.min(), *with.max()), (Point3::origin(), Point3::new(0.0, 7.0, 0.0)));
     }
 
     #[test]

@@ -52,15 +52,21 @@ pub enum Contact {
 /// Support planes looked at before a contact that creeps (a graze, whose rounds converge linearly) is taken as it stands.
 const MAX_ROUNDS: u32 = 256;
 
-/// The first f in [0, `to`] at which the ball touches `triangle` and closes in; `rounds` counts support planes.
-pub fn first_contact(ball: &MovingBall, triangle: &[Point3<f64>; 3], to: f64, rounds: &mut u64) -> Contact {
+/// The first f in [`from`, `to`] at which the ball touches `triangle` and closes in; `rounds` counts support planes.
+pub fn first_contact(
+    ball: &MovingBall,
+    triangle: &[Point3<f64>; 3],
+    from: f64,
+    to: f64,
+    rounds: &mut u64,
+) -> Contact {
     let path = ball.path;
     // Everything relative to the start: what is far from the origin costs no digits.
     let corners = triangle.map(|v| Point3::from(v - path.start()));
     let size = corners.iter().map(|a| a.coords.amax()).fold(ball.radius, f64::max);
     let bound_at = |f: f64| contact_bound(size + path.reach(f));
 
-    let mut f = 0.0;
+    let mut f = from;
     for hold in ball.holds {
         if farthest_along(&corners, &hold.normal) + ball.radius <= bound_at(0.0) {
             f = hold.until.max(f);

@@ -27,10 +27,10 @@
 //! ```
 
 // In dependency order: a module imports only from those above it.
-pub mod bounds;
-pub mod bvh;
 pub mod error;
 pub mod rounding;
+pub mod bounds;
+pub mod bvh;
 mod exact;
 pub mod predicates;
 pub mod projection;
@@ -40,7 +40,9 @@ pub mod inside;
 pub mod closest;
 pub mod triangle;
 pub mod segment;
+mod simple;
 pub mod polygon;
+pub mod quad;
 pub mod clearance;
 pub mod path;
 pub mod mesh;

@@ -10,6 +10,7 @@ use thiserror::Error;
 use crate::bounds::Aabb;
 use crate::bvh::Bvh;
 use crate::normal::unit_normal;
+use crate::polygon::Polygon;
 pub use fold::Fold;
 use fold::{folds, planar_folds, share_normals};
 pub(crate) use topology::Topology;
@@ -146,9 +147,20 @@ impl Mesh {
         normal: UnitVector3<f64>,
     ) -> Result<Self, MeshError> {
         refuse_errors(&vertices, &faces)?;
+        Ok(Self::planar(vertices, faces, normal))
+    }
+
+    /// The triangles of a polygon, all with its normal and with flat edges between them: a surface on which a ball notices
+    /// no triangulation.
+    pub fn from_polygon(polygon: &Polygon) -> Self {
+        let faces = polygon.triangulate().into_iter().map(|corners| corners.map(|v| v as u32)).collect();
+        Self::planar(polygon.vertices().to_vec(), faces, polygon.normal())
+    }
+
+    fn planar(vertices: Vec<Point3<f64>>, faces: Vec<[u32; 3]>, normal: UnitVector3<f64>) -> Self {
         let mut topology = Topology::of(vertices.len(), &faces);
         planar_folds(&mut topology);
-        Ok(Self::assemble(vertices, faces, Normals::Shared(normal), topology))
+        Self::assemble(vertices, faces, Normals::Shared(normal), topology)
     }
 
     fn assemble(vertices: Vec<Point3<f64>>, faces: Vec<[u32; 3]>, normals: Normals, topology: Topology) -> Self {

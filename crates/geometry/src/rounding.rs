@@ -24,9 +24,10 @@ pub fn orient2d_bound(magnitude: f64) -> f64 {
 /// with absolute values everywhere, and `column` the sum of the column's absolute values.
 ///
 /// (7 + 56 u) u is Shewchuk's constant (1997, figure 22). The two products of a minor may underflow by half a spacing each, multiplied
-/// by an entry of the column, and so may the three products with the column: `column` + 1.5 spacings; the double is given.
+/// by an entry of the column, and so may the three products with the column: `column` + 1.5 spacings. Far more is given, the
+/// smallest normal number for a spacing, because a product that is subnormal takes a processor some hundred cycles.
 pub fn orient3d_bound(permanent: f64, column: f64) -> f64 {
-    (7.0 + 56.0 * UNIT_ROUNDOFF) * UNIT_ROUNDOFF * permanent + 2.0 * SUBNORMAL_SPACING * (column + 2.0)
+    (7.0 + 56.0 * UNIT_ROUNDOFF) * UNIT_ROUNDOFF * permanent + f64::MIN_POSITIVE * (column + 2.0)
 }
 
 /// Bound on the error of n.(x - p) as computed from f64 n, x and p: `magnitude` = fl(|n1 d1| + |n2 d2| + |n3 d3|), d = fl(x - p).
@@ -45,6 +46,28 @@ pub fn position_bound(extent: f64) -> f64 {
     16.0 * UNIT_ROUNDOFF * extent
 }
 
+/// u of f32, 2^-24.
+pub(crate) const UNIT_ROUNDOFF_F32: f64 = f32::EPSILON as f64 / 2.0;
+
+/// By how much a point of a segment may move, on each axis, when the tree of boxes takes its ends into its own coordinates and clips
+/// it; `reach` is the largest |coordinate| of the ends there.
+///
+/// An end has one rounding, u `reach`; the direction, at most 2 `reach` long, one; its product with s another; the sum one:
+/// 6 u `reach`, and 8 is given.
+pub(crate) fn segment_bound(reach: f64) -> f64 {
+    8.0 * UNIT_ROUNDOFF * reach
+}
+
+/// Room for all f32 rounding when a segment, with ends no larger than `reach` and a radius, is tested against boxes in [-1, 1], in the
+/// unit of the boxes.
+///
+/// With u of f32: the ends and the direction 3 u `reach`, the points that planes are measured from u (`reach` + `radius`), and 3 u
+/// relative in (plane - point) inverse, which is 6 u `reach` where it matters, at s <= 1. What is over 10 u `reach` + u `radius` covers this
+/// bound's own rounding and that of the boxes, one u of f64 each.
+pub(crate) fn segment_bound_f32(reach: f64, radius: f64) -> f64 {
+    UNIT_ROUNDOFF_F32 * (16.0 * reach + 2.0 * radius + 2.0)
+}
+
 /// By how much each component of a unit normal from [`unit_normal`](crate::normal::unit_normal) may differ from the exact one.
 ///
 /// A vector area is accepted when its error is below 48 u of its length; normalising it adds less than 8 u: three
@@ -58,9 +81,10 @@ pub(crate) const VECTOR_AREA_BOUND: f64 = 48.0 * UNIT_ROUNDOFF;
 /// the absolute values of the products in that component, as computed. The edges are scaled to lengths of about 1.
 ///
 /// A product passes two subtractions, a multiplication, the subtraction within the cross product and at most `fans` - 1 sums; two more for
-/// the roundings of `magnitude` and of the bound. Scaling an edge and multiplying may underflow: four spacings for each cross product.
+/// the roundings of `magnitude` and of the bound. Scaling an edge and multiplying may underflow, by four spacings for each
+/// cross product; the smallest normal number is given for them.
 pub(crate) fn vector_area_bound(magnitude: f64, fans: usize) -> f64 {
-    gamma(fans as u32 + 5) * magnitude + 4.0 * fans as f64 * SUBNORMAL_SPACING
+    gamma(fans as u32 + 5) * magnitude + f64::MIN_POSITIVE * fans as f64
 }
 
 /// The square of the sine of an angle below which a cross product is worth twice the precision: sine 2^-6.

@@ -83,12 +83,12 @@ const SAGITTA_SHARE: f64 = 0.25;
 
 impl Mesh {
     /// The first f in [0, `to`] at which `ball` touches the mesh, closing in: never late, never missed, and the same bits as if every
-    /// face had been asked. `skip` names faces that are not asked.
+    /// face had been asked. `free_until(face)` is an f before which the ball is known not to touch that face.
     pub fn first_contact(
         &self,
         ball: &MovingBall,
         to: f64,
-        skip: impl Fn(u32) -> bool,
+        free_until: impl Fn(u32) -> f64,
         work: &mut Work,
     ) -> Option<FirstContact> {
         let start = ball.path.start();
@@ -115,11 +115,13 @@ impl Mesh {
                 continue;
             }
             work.nodes += self.bvh().visit(&FatSegment { from: a, to: b, radius }, |face| {
-                if !skip(face) {
+                // Asked from the start of the path, not of the piece: the answer does not depend on the pieces.
+                let limit = best.map_or(to, |found| found.f);
+                let free = free_until(face);
+                if free <= limit {
                     work.triangles += 1;
-                    // Asked from the start of the path, not of the piece: the answer does not depend on the pieces.
-                    let limit = best.map_or(to, |found| found.f);
-                    if let Contact::At { f, .. } = first_contact(ball, &self.triangle(face), limit, &mut work.rounds)
+                    let contact = first_contact(ball, &self.triangle(face), free, limit, &mut work.rounds);
+                    if let Contact::At { f, .. } = contact
                         && best.is_none_or(|found| (f, face) < (found.f, found.face))
                     {
                         best = Some(FirstContact { f, face });

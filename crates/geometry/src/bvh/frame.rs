@@ -2,16 +2,14 @@
 
 use super::{FatSegment, WIDTH};
 use crate::bounds::Aabb;
+use crate::rounding::{UNIT_ROUNDOFF, gamma, segment_bound, segment_bound_f32};
 
-/// u of f64 and of f32: the margins below are sums of these.
-const U64: f64 = f64::EPSILON / 2.0;
-const U32: f64 = f32::EPSILON as f64 / 2.0;
 /// A margin beyond this is so much larger than the tree, which has a half extent of 1, that no box can be told apart.
 const HOPELESS: f64 = 1048576.0;
 /// Ends within this many half extents need no clipping before they become f32.
 const NEAR: f64 = 4.0;
-/// Components of a direction below 2^-60 are taken as this: it moves the segment by less than U32 * `U32`, which the
-/// margin covers, and there is no division by zero, no infinity and no NaN.
+/// Components of a direction below 2^-60 are taken as this: it moves the segment by far less than what
+/// [`segment_bound_f32`] leaves over, and there is no division by zero, no infinity and no NaN.
 const LEAST_STEP: f32 = 1.0 / (1u64 << 60) as f32;
 
 /// The map from the caller's coordinates to the tree's: x * scale - centre. Boxes of the tree come to lie in [-1, 1].
@@ -51,23 +49,20 @@ impl Frame {
         [0, 1, 2].map(|i| x[i] * self.scale - self.centre[i])
     }
 
-    /// A box of the tree in f32, rounded outwards from `local`, whose own rounding (below U64) the queries' margins cover.
+    /// A box of the tree in f32, rounded outwards from `local`, whose own rounding the queries' margins cover.
     pub(super) fn item_box(&self, b: &Aabb) -> ([f32; 3], [f32; 3]) {
         (self.local(b.min()).map(round_down), self.local(b.max()).map(round_up))
     }
 
     /// The box of a query in f32, with a margin for the rounding of `local` on both sides. Beyond 2 nothing is lost.
     pub(super) fn outer_box(&self, b: &Aabb) -> ([f32; 3], [f32; 3]) {
-        let margin = |v: f64| 8.0 * U64 * (v.abs() + 1.0);
+        let margin = |v: f64| segment_bound(v.abs() + 1.0);
         let lo = self.local(b.min()).map(|v| v.clamp(-2.0, 2.0)).map(|v| round_down(v - margin(v)));
         let hi = self.local(b.max()).map(|v| v.clamp(-2.0, 2.0)).map(|v| round_up(v + margin(v)));
         (lo, hi)
     }
 
     /// The query, or `None` if it is certain to miss everything.
-    ///
-    /// Rounding in f64, with `reach` the largest coordinate: an end 1 u reach, the direction and the product with s 2 u
-    /// reach each, the sum 1 u reach; 8 u covers it.
     pub(super) fn segment(&self, query: &FatSegment, bounds: &Aabb) -> Option<LocalSegment> {
         let FatSegment { from, to, radius } = query;
         let all = LocalSegment::new(0.0, 1.0, [0.0; 3], [0.0; 3], NEAR);
@@ -79,16 +74,16 @@ impl Frame {
         }
         let (a, b) = (self.local(from), self.local(to));
         let reach = a.iter().chain(&b).fold(0.0, |m: f64, c| m.max(c.abs()));
-        let radius = radius.max(0.0) * self.scale + 8.0 * U64 * reach;
+        let radius = radius.max(0.0) * self.scale + segment_bound(reach);
         // Also true where `reach` or the radius is no longer finite.
-        if !(radius <= HOPELESS && reach <= HOPELESS / U64) {
+        if !(radius <= HOPELESS && reach <= HOPELESS / UNIT_ROUNDOFF) {
             return Some(all);
         }
         let d = [0, 1, 2].map(|i| b[i] - a[i]);
         if reach <= NEAR {
             return Some(LocalSegment::new(0.0, 1.0, a, b, radius));
         }
-        let (s0, s1) = clip(&a, &d, (1.0 + radius) * (1.0 + 8.0 * U64))?;
+        let (s0, s1) = clip(&a, &d, (1.0 + radius) * (1.0 + gamma(2)))?;
         let at = |s: f64| [0, 1, 2].map(|i| a[i] + s * d[i]);
         Some(LocalSegment::new(s0, s1, at(s0), at(s1), radius))
     }
@@ -117,21 +112,17 @@ fn clip(a: &[f64; 3], d: &[f64; 3], bound: f64) -> Option<(f64, f64)> {
         let (t, w) = ((-bound - a[i]) / d[i], (bound - a[i]) / d[i]);
         // Two roundings each, of relative size; what lies beyond [-1, 2] does not count.
         let (near, far) = (t.min(w).clamp(-1.0, 2.0), t.max(w).clamp(-1.0, 2.0));
-        s0 = s0.max(near - 4.0 * U64 * near.abs());
-        s1 = s1.min(far + 4.0 * U64 * far.abs());
+        s0 = s0.max(near - gamma(4) * near.abs());
+        s1 = s1.min(far + gamma(4) * far.abs());
     }
     (s0 <= s1).then_some((s0, s1))
 }
 
 impl LocalSegment {
     /// From `a` at s = `start` to `b` at s = `end`.
-    ///
-    /// Rounding in f32, with m the largest coordinate and u that of f32: the ends and the direction 3 u m, the points
-    /// that planes are measured from u (m + radius), and 3 u relative in (plane - point) * inverse, which is 6 u m where
-    /// it matters, at s <= 1. Room of u (16 m + 2 radius + 2) covers them, and the U64 of the boxes.
     fn new(start: f64, end: f64, a: [f64; 3], b: [f64; 3], radius: f64) -> Self {
-        let m = a.iter().chain(&b).fold(0.0, |m: f64, c| m.max(c.abs()));
-        let radius = round_up(radius + U32 * (16.0 * m + 2.0 * radius + 2.0));
+        let reach = a.iter().chain(&b).fold(0.0, |m: f64, c| m.max(c.abs()));
+        let radius = round_up(radius + segment_bound_f32(reach, radius));
         let (a, b) = (a.map(|c| c as f32), b.map(|c| c as f32));
         let step = [0, 1, 2].map(|i| b[i] - a[i]);
         let forward = step.map(|c| c >= 0.0);
@@ -176,7 +167,7 @@ impl LocalSegment {
             return -1.0;
         }
         // start <= s < end, so that the length is not 0; three roundings.
-        round_up((s - self.start) / (self.end - self.start) * (1.0 + 8.0 * U64))
+        round_up((s - self.start) / (self.end - self.start) * (1.0 + gamma(4)))
     }
 }
 

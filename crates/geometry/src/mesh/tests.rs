@@ -164,6 +164,22 @@ fn a_planar_mesh_has_the_declared_normal_and_flat_edges() {
 }
 
 #[test]
+fn r37_a_concave_polygon_is_one_flat_surface_with_its_rim() {
+    // An arrow head in a plane that no axis knows, with a vertex on a straight edge.
+    let (u, v) = (Vector3::new(3.0, 5.0, 1.0), Vector3::new(-2.0, 7.0, 4.0));
+    let corners = [[0.0, 0.0], [4.0, 0.0], [8.0, 0.0], [8.0, 8.0], [5.0, 2.0]];
+    let polygon = Polygon::new(corners.map(|[x, y]| Point3::origin() + u * x + v * y).to_vec()).unwrap();
+    let m = Mesh::from_polygon(&polygon);
+    assert_eq!((m.vertices().len(), m.faces().len()), (5, 3));
+    assert!((0..3).all(|f| m.normal(f) == Some(polygon.normal())));
+    let rim = m.edges().filter(|e| e.fold == Fold::Rim);
+    let mut ends: Vec<_> = rim.map(|e| e.vertices).collect();
+    ends.sort_unstable();
+    assert_eq!(ends, [[0, 1], [0, 4], [1, 2], [2, 3], [3, 4]]);
+    assert_eq!(m.edges().filter(|e| e.fold == Fold::Flat).count(), 2);
+}
+
+#[test]
 fn h12_scaling_by_a_power_of_two_changes_nothing() {
     let reference = terrain(6);
     for k in [-300, -77, 1, 300] {
