@@ -1,8 +1,6 @@
 //! Every way a scene, a mesh or a list of balls can be wrong: what the user is told, and that no output is left behind.
 
-mod common;
-
-use common::{Folder, shown};
+use crate::common::{Folder, shown};
 
 /// A scene with nothing wrong in it; each test breaks one thing.
 const SCENE: &str = r#"version = 1

@@ -1,8 +1,6 @@
 //! `carom run` end to end: what it writes, that it writes all or nothing, and that it writes the same every time.
 
-mod common;
-
-use common::{Folder, shown};
+use crate::common::{Folder, shown};
 use std::io::Write;
 use std::process::Stdio;
 

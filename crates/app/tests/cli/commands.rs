@@ -1,8 +1,6 @@
 //! The commands beside `run`: help, usage errors, tables, the schema, and what `check` finds.
 
-mod common;
-
-use common::{Folder, shown};
+use crate::common::{Folder, shown};
 
 #[test]
 fn help_of_every_command() {
