@@ -153,7 +153,9 @@ scenes! {
 
 #[test]
 fn several_at_once_are_all_told_in_the_order_of_the_file() {
-    let scene = broken("restitution = 0.75", "restitution = 7.5").replace("0.033", "-1").replace("duration = 3.0", "duration = 0");
+    let scene = broken("restitution = 0.75", "restitution = 7.5")
+        .replace("0.033", "-1")
+        .replace("duration = 3.0", "duration = 0");
     refused_scene("several_at_once", &scene);
     let scene = broken("restitution", "restituton").replace("radius", "raduis");
     refused_scene("several_keys_at_once", &scene);
@@ -229,9 +231,11 @@ fn meshes_in_obj() {
 fn missing_mesh() {
     let scene = broken("plane = { point = [0, 0, 0], normal = [0, 0, 1] }", "mesh = { file = \"nowhere.obj\" }");
     refused_scene("missing_mesh", &scene);
-    let scene = broken("plane = { point = [0, 0, 0], normal = [0, 0, 1] }", "mesh = { file = \"hill.obj\", scale = 0 }");
+    let scene =
+        broken("plane = { point = [0, 0, 0], normal = [0, 0, 1] }", "mesh = { file = \"hill.obj\", scale = 0 }");
     refused_scene("mesh_scale_zero", &scene);
-    let scene = broken("plane = { point = [0, 0, 0], normal = [0, 0, 1] }", "mesh = { file = \"hill.obj\", up = \"w\" }");
+    let scene =
+        broken("plane = { point = [0, 0, 0], normal = [0, 0, 1] }", "mesh = { file = \"hill.obj\", up = \"w\" }");
     refused_scene("mesh_up_w", &scene);
 }
 
@@ -273,7 +277,11 @@ fn meshes_in_ply() {
     refused_mesh("ply_word_for_a_number", "hill.ply", ply.replace("0 1 0", "0 x 0").as_bytes());
     refused_mesh("ply_without_z", "hill.ply", ply.replace("property double z\n", "").as_bytes());
     refused_mesh("ply_of_no_faces", "hill.ply", ply.replace("element face 1", "element face 0").as_bytes());
-    refused_mesh("ply_of_endless_faces", "hill.ply", ply.replace("element face 1", "element face 999999999999").as_bytes());
+    refused_mesh(
+        "ply_of_endless_faces",
+        "hill.ply",
+        ply.replace("element face 1", "element face 999999999999").as_bytes(),
+    );
     refused_mesh("ply_face_of_two", "hill.ply", ply.replace("3 0 1 2", "2 0 1").as_bytes());
     refused_mesh("ply_empty", "hill.ply", b"");
     refused_mesh("ply_that_is_none", "hill.ply", b"just some words\n");

@@ -22,6 +22,8 @@ pub struct Hit {
     pub surface: usize,
     /// The face of a mesh.
     pub face: Option<u32>,
+    /// The slope dc/df of the clearance there, where a plane's was solved.
+    pub rate: Option<f64>,
 }
 
 /// When a contact that the ball has is entered again: clearance 0 at the start, changing with its exact rate.
@@ -171,6 +173,11 @@ impl<'a> Obstacles<'a> {
         returns: &Returns,
         counters: &mut Counters,
     ) -> Option<Hit> {
+        // Ties go by name, so that the order of the surfaces does not matter.
+        let rank = |surface: usize| self.plan.surfaces[surface].rank;
+        let earlier = |f: f64, surface: usize, than: &Option<Hit>| {
+            than.is_none_or(|hit| f < hit.f || (f == hit.f && rank(surface) < rank(hit.surface)))
+        };
         let mut earliest: Option<Hit> = None;
         for ((surface, plane), side) in self.plan.planes.iter().zip(&self.sides) {
             let known = contacts.iter().position(|c| c.surface == *surface);
@@ -183,10 +190,10 @@ impl<'a> Obstacles<'a> {
                     step.path.clearance(gap, &normal).first_entry(0.0, step.to)
                 }
             };
-            if let Entry::At { f, .. } = entry
-                && earliest.is_none_or(|hit| f < hit.f)
+            if let Entry::At { f, rate } = entry
+                && earlier(f, *surface, &earliest)
             {
-                earliest = Some(Hit { f, surface: *surface, face: None });
+                earliest = Some(Hit { f, surface: *surface, face: None, rate: Some(rate) });
             }
         }
         let holds: ArrayVec<Hold, MAX_CONTACTS> = returns.iter().map(|r| r.hold).collect();
@@ -201,9 +208,9 @@ impl<'a> Obstacles<'a> {
             let found = mesh.first_contact(&ball, to, free_until, &mut work);
             counters.add(&work);
             if let Some(found) = found
-                && earliest.is_none_or(|hit| found.f < hit.f)
+                && earlier(found.f, *surface, &earliest)
             {
-                earliest = Some(Hit { f: found.f, surface: *surface, face: Some(found.face) });
+                earliest = Some(Hit { f: found.f, surface: *surface, face: Some(found.face), rate: None });
             }
         }
         earliest

@@ -125,34 +125,37 @@ impl<O: Observer> Walk<'_, O> {
         let hit = self.obstacles.earliest(&step, &self.contacts, &returns, &mut self.counters);
         match hit {
             None => {
-                self.travel(&step, step.to, Motion::Flying);
-                if timestep == remaining && step.time(step.to) >= remaining {
-                    self.clock.set(end);
-                }
+                let whole = timestep == remaining && step.time(step.to) >= remaining;
+                self.travel(&step, step.to, Motion::Flying, whole.then_some(end));
                 self.contacts.clear();
                 self.halvings = 0;
             }
             Some(hit) => {
-                self.travel(&step, hit.f, Motion::Flying);
+                self.travel(&step, hit.f, Motion::Flying, None);
                 self.arrive(&step, hit, &returns);
             }
         }
     }
 
-    /// Moves along `step` to `to`.
-    fn travel(&mut self, step: &Step, to: f64, motion: Motion) {
+    /// Moves along `step` to `to`, which is at the time `end` if that is known better than by the sum.
+    fn travel(&mut self, step: &Step, to: f64, motion: Motion, end: Option<f64>) {
         let time = self.clock.now();
+        match end {
+            Some(end) => self.clock.set(end),
+            None => self.clock.advance(step.time(to)),
+        }
+        let end = self.clock.now();
         if to > 0.0 {
-            self.observer.segment(&Segment { time, step: *step, to, motion });
+            self.observer.segment(&Segment { time, end, step: *step, to, motion });
         }
         self.state = step.at(to);
-        if self.clock.advance(step.time(to)) {
+        if end > time {
             self.standstill = 0;
-        } else {
-            self.standstill += 1;
-            if self.standstill > MAX_STANDSTILL {
-                self.ending = Some(Ending::UnresolvedContact);
-            }
+            return;
+        }
+        self.standstill += 1;
+        if self.standstill > MAX_STANDSTILL {
+            self.ending = Some(Ending::UnresolvedContact);
         }
     }
 
@@ -226,16 +229,10 @@ impl<O: Observer> Walk<'_, O> {
                 _ => {}
             }
         }
-        if step.exact
-            && contact.surface == hit.surface
-            && contact.site.is_none()
-            && let Some(gap) = self.obstacles.gap(contact, &step.path.start())
-            && let Entry::At { f, rate } = step.path.clearance(gap, &contact.normal).first_entry(0.0, step.to)
-            && f == hit.f
-        {
-            return rate / step.seconds;
+        match hit.rate {
+            Some(rate) if step.exact && contact.surface == hit.surface => rate / step.seconds,
+            _ => contact.rate,
         }
-        contact.rate
     }
 
     /// What the ball makes of its contacts: it flies on, goes on bouncing, or settles. Says whether something carries it.
@@ -320,7 +317,8 @@ impl<O: Observer> Walk<'_, O> {
     fn set_flying(&mut self, was_sliding: bool) {
         self.motion = Motion::Flying;
         self.settling = None;
-        if was_sliding && let Some(contact) = self.contacts.first().copied() {
+        let left = self.contacts.iter().find(|c| c.lasting).or(self.contacts.first()).copied();
+        if was_sliding && let Some(contact) = left {
             self.tell(EventKind::Leave, &contact, self.state.velocity);
         }
         for contact in &mut self.contacts {
@@ -399,7 +397,8 @@ impl<O: Observer> Walk<'_, O> {
         let hit = self.obstacles.earliest(&step, &self.contacts, &returns, &mut self.counters);
         let hit = hit.filter(|hit| exit.is_none_or(|(f, ..)| hit.f < f));
         let to = hit.map(|hit| hit.f).or(exit.map(|(f, ..)| f)).unwrap_or(step.to);
-        self.travel(&step, to, motion);
+        let whole = hit.is_none() && exit.is_none() && !stops && step.time(step.to) >= remaining;
+        self.travel(&step, to, motion, whole.then_some(self.plan.duration));
         if to > 0.0 {
             self.leave_behind();
         }
@@ -419,11 +418,7 @@ impl<O: Observer> Walk<'_, O> {
                 }
             }
             (None, None) if stops => self.state.velocity = Vector3::zeros(),
-            (None, None) => {
-                if step.time(step.to) >= remaining {
-                    self.clock.set(self.plan.duration);
-                }
-            }
+            (None, None) => {}
         }
     }
 
@@ -514,8 +509,7 @@ impl<O: Observer> Walk<'_, O> {
         let zero = Vector3::zeros();
         let step =
             crate::integrators::exact::step(&State { velocity: zero, ..self.state }, zero, self.clock.until(end));
-        self.travel(&step, step.to, Motion::Resting);
-        self.clock.set(end);
+        self.travel(&step, step.to, Motion::Resting, Some(end));
     }
 
     fn tell(&mut self, kind: EventKind, contact: &Contact, velocity_in: Vector3<f64>) {

@@ -12,7 +12,7 @@ use crate::forces::Forces;
 use crate::integrators::adaptive::Adaptive;
 use crate::integrators::{Step, exact};
 use crate::support::{Projection, project_offset};
-use crate::tolerance::parallel;
+use crate::tolerance::{parallel, rate_rounding};
 use carom_geometry::sweep::Bend;
 use nalgebra::{Point3, Vector3};
 
@@ -64,6 +64,8 @@ pub struct Balance {
     pub sticks: bool,
     /// The loads.
     pub loads: Projection,
+    /// An acceleration that is none, by rounding.
+    rounding: f64,
 }
 
 impl Balance {
@@ -78,12 +80,13 @@ impl Balance {
                 ContactFriction::Sticking => sticks = true,
             }
         }
-        Self { free: loads.velocity, friction, sticks, loads }
+        Self { free: loads.velocity, friction, sticks, loads, rounding: rate_rounding(a.norm()) }
     }
 
     /// Whether the ball, once it stands, stays: |F_t| <= mu |F_n|, compared by squares. No force rests on any surface.
     pub fn holds(&self) -> bool {
-        self.sticks || self.free.norm_squared() <= self.friction * self.friction
+        let friction = self.friction + self.rounding;
+        self.sticks || self.free.norm_squared() <= friction * friction
     }
 
     /// The acceleration of a ball that moves, or begins to, along the unit vector `direction`.

@@ -10,8 +10,25 @@ use std::str::SplitAsciiWhitespace;
 
 /// The keywords that a mesh file may hold beside `v` and `f`; they say nothing about where the faces are.
 const SKIPPED: [&str; 19] = [
-    "vt", "vn", "vp", "o", "g", "s", "mg", "usemtl", "mtllib", "l", "p", "lod", "bevel", "c_interp", "d_interp",
-    "maplib", "usemap", "shadow_obj", "trace_obj",
+    "vt",
+    "vn",
+    "vp",
+    "o",
+    "g",
+    "s",
+    "mg",
+    "usemtl",
+    "mtllib",
+    "l",
+    "p",
+    "lod",
+    "bevel",
+    "c_interp",
+    "d_interp",
+    "maplib",
+    "usemap",
+    "shadow_obj",
+    "trace_obj",
 ];
 
 /// Reads an OBJ file.
@@ -46,7 +63,10 @@ pub(super) fn read(bytes: &[u8]) -> Result<RawMesh, Fault> {
     for (line, corners) in &faces {
         if let Some(&index) = corners.iter().find(|&&i| i as usize >= mesh.vertices.len()) {
             let n = mesh.vertices.len();
-            return Err(Fault::at(*line, format!("the face names vertex {}, but the file has {n} vertices", u64::from(index) + 1)));
+            return Err(Fault::at(
+                *line,
+                format!("the face names vertex {}, but the file has {n} vertices", u64::from(index) + 1),
+            ));
         }
     }
     for (line, corners) in faces {
@@ -81,7 +101,8 @@ fn face(words: SplitAsciiWhitespace<'_>, vertices: usize, line: usize) -> Result
                 Ok(i) => {
                     let before = i64::try_from(vertices).ok().and_then(|n| n.checked_add(i)).filter(|&n| n >= 0);
                     let before = before.and_then(|n| u32::try_from(n).ok());
-                    before.ok_or_else(|| fault(&format!("goes back beyond the first of the {vertices} vertices so far")))
+                    before
+                        .ok_or_else(|| fault(&format!("goes back beyond the first of the {vertices} vertices so far")))
                 }
             }
         })

@@ -15,7 +15,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<RawMesh, Fault> {
             return Err(Fault::whole(format!("the header names no element `{element}`")));
         };
         let has = |name: &&&str| definition.properties.contains_key(**name);
-        let complete = if element == "vertex" { needed.iter().all(|n| has(&n)) } else { needed.iter().any(|n| has(&n)) };
+        let complete =
+            if element == "vertex" { needed.iter().all(|n| has(&n)) } else { needed.iter().any(|n| has(&n)) };
         if !complete {
             return Err(Fault::whole(format!("the element `{element}` lacks the property {}", needed.join(" or "))));
         }
@@ -23,7 +24,10 @@ pub(super) fn read(bytes: &[u8]) -> Result<RawMesh, Fault> {
     // An element takes up a byte or more; one without properties would take none, and a count of 10^18 no end.
     if let Some(element) = header.elements.values().find(|e| e.count > bytes.len()) {
         let (name, count) = (&element.name, element.count);
-        return Err(Fault::whole(format!("the header promises {count} elements `{name}`, but the file has {} bytes", bytes.len())));
+        return Err(Fault::whole(format!(
+            "the header promises {count} elements `{name}`, but the file has {} bytes",
+            bytes.len()
+        )));
     }
     let mut mesh = RawMesh::default();
     let mut faces = Vec::new();
@@ -50,7 +54,10 @@ pub(super) fn read(bytes: &[u8]) -> Result<RawMesh, Fault> {
         let corners = corners.into_iter().map(|i| in_range(i).ok_or(i)).collect::<Result<Vec<u32>, i64>>();
         let corners = corners.map_err(|i| {
             let n = mesh.vertices.len();
-            Fault::whole(format!("face {number} names vertex {i}, but the file has vertices 0 to {}", n.saturating_sub(1)))
+            Fault::whole(format!(
+                "face {number} names vertex {i}, but the file has vertices 0 to {}",
+                n.saturating_sub(1)
+            ))
         })?;
         let faces = polygonize(&mesh.vertices, &corners);
         mesh.faces.extend(faces.map_err(|message| Fault::whole(format!("face {number}: {message}")))?);

@@ -55,7 +55,9 @@ fn read_binary(facets: &[u8]) -> Result<RawMesh, Fault> {
         let corners = [corner(0), corner(1), corner(2)];
         if let Some(x) = corners.iter().flatten().find(|x| !x.is_finite()) {
             let byte = HEADER + COUNT + FACET * number;
-            return Err(Fault::whole(format!("facet {number} (byte {byte}) has the coordinate {x}, which is not finite")));
+            return Err(Fault::whole(format!(
+                "facet {number} (byte {byte}) has the coordinate {x}, which is not finite"
+            )));
         }
         welder.facet(corners)?;
     }

@@ -168,8 +168,11 @@ impl<'de> de::Deserializer<'de> for &'de Node {
             Value::Table(entries) => match entries.as_slice() {
                 [entry] => visitor.visit_enum(Choice { entry }),
                 _ => Err(Error::new(
-                    Problem::new(format!("expected exactly one key, found {}", entries.len()))
-                        .help(choose("", "one of", variants.iter().copied())),
+                    Problem::new(format!("expected exactly one key, found {}", entries.len())).help(choose(
+                        "",
+                        "one of",
+                        variants.iter().copied(),
+                    )),
                 )),
             },
             _ => self.deserialize_any(visitor),
