@@ -249,10 +249,11 @@ impl Mesh {
                         let [a, b] = self.edge_ends(face, edge);
                         let far = if a == v { b } else { a };
                         let next = self.edge_site(face, edge);
-                        if (a == v || b == v) && bounds.iter().all(|bound| bound.next != next) {
-                            if let Some(outward) = (vertex(far) - vertex(v)).try_normalize(0.0) {
-                                bounds.push(RegionBound { outward, point: vertex(v), next });
-                            }
+                        if (a == v || b == v)
+                            && bounds.iter().all(|bound| bound.next != next)
+                            && let Some(outward) = (vertex(far) - vertex(v)).try_normalize(0.0)
+                        {
+                            bounds.push(RegionBound { outward, point: vertex(v), next });
                         }
                     }
                 }
