@@ -60,15 +60,11 @@ fn leaving(step: &Step, contact: &Contact) -> Clearance {
 /// For a parabola |w(f)|^2 - r^2, with w the part across the edge, is a quartic, solved like any clearance. A path of higher degree follows
 /// its parabola closely enough while its further terms take less than a quarter of what the distance gains.
 fn leaves_until(step: &Step, bend: Bend, radius: f64) -> f64 {
-    let (point, across): (Point3<f64>, Box<dyn Fn(Vector3<f64>) -> Vector3<f64>>) = match bend {
-        Bend::Flat => return 0.0,
-        Bend::Around { point, along } => (point, Box::new(move |w| w - along * along.dot(&w))),
-        Bend::About { point } => (point, Box::new(|w| w)),
-    };
     let zero = Vector3::zeros();
     let term = |k: usize| step.path.terms().get(k).copied().unwrap_or(zero);
-    let w = across(step.path.start() - point).normalize() * radius;
-    let (b, c) = (across(term(0)), across(term(1)));
+    let away = bend.away_from(&step.path.start()).and_then(|away| away.try_normalize(0.0));
+    let Some(w) = away.map(|n| n * radius) else { return 0.0 };
+    let (b, c) = (bend.across(&term(0)), bend.across(&term(1)));
     // The ball touches and leaves tangentially: the terms of order 0 and 1 are zero.
     let gain = b.norm_squared() + 2.0 * w.dot(&c);
     let squared = Clearance::new([0.0, 0.0, gain, 2.0 * b.dot(&c), c.norm_squared()]);

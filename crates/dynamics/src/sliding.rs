@@ -32,23 +32,15 @@ pub struct Carrier {
 impl Carrier {
     /// The unit normal at `position`.
     fn normal(&self, position: &Point3<f64>) -> Vector3<f64> {
-        let away = match self.bend {
-            Bend::Flat => return self.contact.normal,
-            Bend::Around { point, along } => {
-                let w = position - point;
-                w - along * along.dot(&w)
-            }
-            Bend::About { point } => position - point,
-        };
-        away.try_normalize(0.0).unwrap_or(self.contact.normal)
+        let away = self.bend.away_from(position).and_then(|away| away.try_normalize(0.0));
+        away.unwrap_or(self.contact.normal)
     }
 
     /// The acceleration towards it, in m/s^2, that following its curve takes at `velocity`: v^2 / r across an edge.
     pub fn centripetal(&self, velocity: &Vector3<f64>) -> f64 {
         match self.bend {
             Bend::Flat => 0.0,
-            Bend::Around { along, .. } => (velocity - along * along.dot(velocity)).norm_squared() / self.radius,
-            Bend::About { .. } => velocity.norm_squared() / self.radius,
+            bend => bend.across(velocity).norm_squared() / self.radius,
         }
     }
 }

@@ -214,14 +214,12 @@ impl<O: Observer> Walk<'_, O> {
         }
         let mut loaded = [false; MAX_CONTACTS];
         balance.loads.loads().for_each(|(i, _)| loaded[i] = true);
-        let mut place = 0;
         let mut dropped = false;
-        for contact in self.contacts.iter_mut().filter(|c| c.lasting) {
+        for (place, contact) in self.contacts.iter_mut().filter(|c| c.lasting).enumerate() {
             if !loaded[place] {
                 contact.lasting = false;
                 dropped = true;
             }
-            place += 1;
         }
         dropped
     }
