@@ -116,7 +116,6 @@ scenes! {
     negative_radius: "radius = 0.033" => "radius = -0.033";
     zero_mass: "mass = 0.058" => "mass = 0";
     drag_without_mass: "mass = 0.058" => "";
-    quadratic_drag_without_mass: "mass = 0.058" => "\n[other]";
     wind_without_drag: "drag = { linear = 0.05 }" => "";
     drag_without_density: "linear = 0.05" => "coefficient = 0.47";
     negative_density: "linear = 0.05" => "coefficient = 0.47, density = -1.2";
@@ -159,6 +158,12 @@ fn several_at_once_are_all_told_in_the_order_of_the_file() {
     refused_scene("several_at_once", &scene);
     let scene = broken("restitution", "restituton").replace("radius", "raduis");
     refused_scene("several_keys_at_once", &scene);
+}
+
+#[test]
+fn quadratic_drag_without_mass() {
+    let scene = broken("linear = 0.05", "coefficient = 0.47, density = 1.2").replace("mass = 0.058", "");
+    refused_scene("quadratic_drag_without_mass", &scene);
 }
 
 #[test]
