@@ -2,3 +2,5 @@
 
 pub mod data;
 pub mod nasty;
+pub mod obj;
+pub mod sources;
