@@ -7,6 +7,7 @@ use crate::contact::{Contact, MovingBall, first_contact};
 use crate::mesh::{Fold, Mesh};
 use crate::rounding::position_bound;
 use nalgebra::{Point3, Vector3};
+use std::cmp::Ordering;
 
 /// A place of a mesh: a face, an edge or a vertex. Each edge and vertex has one name, whichever face it was found by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -152,7 +153,11 @@ impl Mesh {
                 found.push((self.site(face, closest.feature), closest.offset));
             }
         });
-        found.sort_by_key(|(site, _)| *site);
+        // Of the offsets to an edge or a vertex from its faces, which differ by rounding, the same one in whatever order they come.
+        let order = |a: &Vector3<f64>, b: &Vector3<f64>| {
+            a.iter().zip(b.iter()).map(|(a, b)| a.total_cmp(b)).find(|o| o.is_ne()).unwrap_or(Ordering::Equal)
+        };
+        found.sort_by(|(a, u), (b, v)| a.cmp(b).then_with(|| order(u, v)));
         found.dedup_by_key(|(site, _)| *site);
         let hidden = |site: &Site| found.iter().any(|(other, _)| self.hides(other, site));
         found
@@ -249,10 +254,11 @@ impl Mesh {
                         let [a, b] = self.edge_ends(face, edge);
                         let far = if a == v { b } else { a };
                         let next = self.edge_site(face, edge);
-                        if (a == v || b == v) && bounds.iter().all(|bound| bound.next != next) {
-                            if let Some(outward) = (vertex(far) - vertex(v)).try_normalize(0.0) {
-                                bounds.push(RegionBound { outward, point: vertex(v), next });
-                            }
+                        if (a == v || b == v)
+                            && bounds.iter().all(|bound| bound.next != next)
+                            && let Some(outward) = (vertex(far) - vertex(v)).try_normalize(0.0)
+                        {
+                            bounds.push(RegionBound { outward, point: vertex(v), next });
                         }
                     }
                 }
@@ -293,7 +299,10 @@ impl Mesh {
             Site::Face(_) => Bend::Flat,
             Site::Edge { face, edge } if self.fold(face, edge.into()) == Fold::Flat => Bend::Flat,
             Site::Edge { face, edge } => {
-                let [a, b] = self.edge_ends(face, edge).map(|v| self.vertices()[v as usize]);
+                // From the lower vertex to the higher: the same bits from whichever face the edge is seen.
+                let mut ends = self.edge_ends(face, edge);
+                ends.sort_unstable();
+                let [a, b] = ends.map(|v| self.vertices()[v as usize]);
                 match (b - a).try_normalize(0.0) {
                     Some(along) => Bend::Around { point: a, along },
                     None => Bend::About { point: a },
@@ -306,18 +315,11 @@ impl Mesh {
     /// Where `site` is nearest to `centre`, taken as an infinite plane or line, and the unit normal from there to `centre`.
     /// None where the centre lies on it.
     pub fn foot(&self, site: Site, centre: &Point3<f64>) -> Option<(Point3<f64>, Vector3<f64>)> {
-        let away = match self.bend(site) {
-            Bend::Around { point, along } => {
-                let w = centre - point;
-                w - along * along.dot(&w)
-            }
-            Bend::About { point } => centre - point,
-            Bend::Flat => {
-                let face = site.face();
-                let (n, point) = (self.normal(face)?.into_inner(), self.triangle(face)[0]);
-                let height = n.dot(&(centre - point));
-                return Some((centre - n * height, if height < 0.0 { -n } else { n }));
-            }
+        let Some(away) = self.bend(site).away_from(centre) else {
+            let face = site.face();
+            let (n, point) = (self.normal(face)?.into_inner(), self.triangle(face)[0]);
+            let height = n.dot(&(centre - point));
+            return Some((centre - n * height, if height < 0.0 { -n } else { n }));
         };
         away.try_normalize(0.0).map(|n| (centre - away, n))
     }
@@ -340,6 +342,25 @@ pub enum Bend {
         /// The vertex.
         point: Point3<f64>,
     },
+}
+
+impl Bend {
+    /// From the edge or vertex to `centre`, at right angles to the edge; none on a plane.
+    pub fn away_from(&self, centre: &Point3<f64>) -> Option<Vector3<f64>> {
+        match self {
+            Bend::Flat => None,
+            Bend::Around { point, .. } | Bend::About { point } => Some(self.across(&(centre - point))),
+        }
+    }
+
+    /// The part of `v` that follows the curve: across an edge, all of it about a vertex, none on a plane.
+    pub fn across(&self, v: &Vector3<f64>) -> Vector3<f64> {
+        match self {
+            Bend::Flat => Vector3::zeros(),
+            Bend::Around { along, .. } => v - along * along.dot(v),
+            Bend::About { .. } => *v,
+        }
+    }
 }
 
 fn same_ends(a: [u32; 2], b: [u32; 2]) -> bool {
