@@ -1,7 +1,7 @@
 //! Properties of whole runs: symmetry, scale, energy, reversal, and never through.
 
 use carom_dynamics::energy::{kinetic, potential};
-use carom_dynamics::events::{Ending, Event};
+use carom_dynamics::events::{Ending, Event, EventKind, Motion};
 use carom_dynamics::scene::Scene;
 use carom_dynamics::surface::Shape;
 use carom_geometry::plane::Plane;
@@ -79,7 +79,7 @@ fn mapped(
 }
 
 /// What an event is but for its numbers.
-fn labels(run: &Run) -> Vec<(carom_dynamics::events::EventKind, usize)> {
+fn labels(run: &Run) -> Vec<(EventKind, usize)> {
     run.trajectory.events.iter().map(|e| (e.kind, e.surface)).collect()
 }
 
@@ -181,6 +181,8 @@ proptest! {
         let turn = Rotation3::from_axis_angle(&Unit::new_normalize(axis + Vector3::new(0.0, 0.0, 1.5)), angle);
         let turned = mapped(&room.0, |x| turn * x, |v| turn * v).run();
         let right = room.run();
+        prop_assert!(right.trajectory.events.len() < 10_000, "{:?}", right.outcome);
+        prop_assert!(turned.trajectory.events.len() < 10_000, "{:?}", turned.outcome);
         let (a, b) = (turned.impacts(), right.impacts());
         // Two hits at almost the same time may change places.
         let n = a.len().min(b.len()).min(5);
@@ -218,14 +220,15 @@ proptest! {
         let mut first = whole.clone();
         first.0.duration = cut;
         let first = first.run();
-        // The first part is the same to the bit.
+        // The first part is the same to the bit, but for curved slides, whose steps depend on how long they may be.
         let before: Vec<_> = right.trajectory.events.iter().filter(|e| e.time < cut).copied().collect();
-        prop_assert_eq!(&first.trajectory.events, &before);
+        let flights = before.iter().position(|e| e.kind == EventKind::Slide).unwrap_or(before.len());
+        prop_assert_eq!(&first.trajectory.events[..flights], &before[..flights]);
         let mut second = whole.clone();
         second.0.duration = 2.0 - cut;
         second.0.balls.clear();
         let state = first.outcome.state;
-        prop_assume!(first.outcome.motion == carom_dynamics::events::Motion::Flying);
+        prop_assume!(first.outcome.motion == Motion::Flying);
         let second = second.ball(state.position, state.velocity, case.radius).run();
         let rest: Vec<_> = right.impacts().into_iter().filter(|e| e.time > cut).take(4).collect();
         prop_assume!(rest.iter().all(|e| closing(e) > 1e-3 && e.time - cut > 1e-6));
