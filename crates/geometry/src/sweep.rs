@@ -312,12 +312,23 @@ impl Mesh {
         }
     }
 
+    /// A point of `site`.
+    pub fn anchor(&self, site: Site) -> Point3<f64> {
+        match site {
+            Site::Face(face) => self.triangle(face)[0],
+            Site::Edge { face, edge } => self.triangle(face)[edge as usize],
+            Site::Vertex { vertex, .. } => self.vertices()[vertex as usize],
+        }
+    }
+
     /// Where `site` is nearest to `centre`, taken as an infinite plane or line, and the unit normal from there to `centre`.
     /// None where the centre lies on it.
     pub fn foot(&self, site: Site, centre: &Point3<f64>) -> Option<(Point3<f64>, Vector3<f64>)> {
         let Some(away) = self.bend(site).away_from(centre) else {
             let face = site.face();
-            let (n, point) = (self.normal(face)?.into_inner(), self.triangle(face)[0]);
+            // From the lowest of its vertices: the same bits with whichever of them the face begins.
+            let [a, b, c] = self.faces()[face as usize];
+            let (n, point) = (self.normal(face)?.into_inner(), self.vertices()[a.min(b).min(c) as usize]);
             let height = n.dot(&(centre - point));
             return Some((centre - n * height, if height < 0.0 { -n } else { n }));
         };
