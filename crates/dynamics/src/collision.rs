@@ -22,6 +22,8 @@ pub struct Hit {
     pub surface: usize,
     /// The face of a mesh.
     pub face: Option<u32>,
+    /// The slope dc/df of the clearance there, where a plane's was solved.
+    pub rate: Option<f64>,
 }
 
 /// When a contact that the ball has is entered again: clearance 0 at the start, changing with its exact rate.
@@ -58,15 +60,11 @@ fn leaving(step: &Step, contact: &Contact) -> Clearance {
 /// For a parabola |w(f)|^2 - r^2, with w the part across the edge, is a quartic, solved like any clearance. A path of higher degree follows
 /// its parabola closely enough while its further terms take less than a quarter of what the distance gains.
 fn leaves_until(step: &Step, bend: Bend, radius: f64) -> f64 {
-    let (point, across): (Point3<f64>, Box<dyn Fn(Vector3<f64>) -> Vector3<f64>>) = match bend {
-        Bend::Flat => return 0.0,
-        Bend::Around { point, along } => (point, Box::new(move |w| w - along * along.dot(&w))),
-        Bend::About { point } => (point, Box::new(|w| w)),
-    };
     let zero = Vector3::zeros();
     let term = |k: usize| step.path.terms().get(k).copied().unwrap_or(zero);
-    let w = across(step.path.start() - point).normalize() * radius;
-    let (b, c) = (across(term(0)), across(term(1)));
+    let away = bend.away_from(&step.path.start()).and_then(|away| away.try_normalize(0.0));
+    let Some(w) = away.map(|n| n * radius) else { return 0.0 };
+    let (b, c) = (bend.across(&term(0)), bend.across(&term(1)));
     // The ball touches and leaves tangentially: the terms of order 0 and 1 are zero.
     let gain = b.norm_squared() + 2.0 * w.dot(&c);
     let squared = Clearance::new([0.0, 0.0, gain, 2.0 * b.dot(&c), c.norm_squared()]);
@@ -171,6 +169,11 @@ impl<'a> Obstacles<'a> {
         returns: &Returns,
         counters: &mut Counters,
     ) -> Option<Hit> {
+        // Ties go by name, so that the order of the surfaces does not matter.
+        let rank = |surface: usize| self.plan.surfaces[surface].rank;
+        let earlier = |f: f64, surface: usize, than: &Option<Hit>| {
+            than.is_none_or(|hit| f < hit.f || (f == hit.f && rank(surface) < rank(hit.surface)))
+        };
         let mut earliest: Option<Hit> = None;
         for ((surface, plane), side) in self.plan.planes.iter().zip(&self.sides) {
             let known = contacts.iter().position(|c| c.surface == *surface);
@@ -183,10 +186,10 @@ impl<'a> Obstacles<'a> {
                     step.path.clearance(gap, &normal).first_entry(0.0, step.to)
                 }
             };
-            if let Entry::At { f, .. } = entry
-                && earliest.is_none_or(|hit| f < hit.f)
+            if let Entry::At { f, rate } = entry
+                && earlier(f, *surface, &earliest)
             {
-                earliest = Some(Hit { f, surface: *surface, face: None });
+                earliest = Some(Hit { f, surface: *surface, face: None, rate: Some(rate) });
             }
         }
         let holds: ArrayVec<Hold, MAX_CONTACTS> = returns.iter().map(|r| r.hold).collect();
@@ -201,9 +204,9 @@ impl<'a> Obstacles<'a> {
             let found = mesh.first_contact(&ball, to, free_until, &mut work);
             counters.add(&work);
             if let Some(found) = found
-                && earliest.is_none_or(|hit| found.f < hit.f)
+                && earlier(found.f, *surface, &earliest)
             {
-                earliest = Some(Hit { f: found.f, surface: *surface, face: Some(found.face) });
+                earliest = Some(Hit { f: found.f, surface: *surface, face: Some(found.face), rate: None });
             }
         }
         earliest

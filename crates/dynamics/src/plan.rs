@@ -170,7 +170,7 @@ fn shapes(scene: &Scene) -> (Planes, Meshes) {
     let (mut planes, mut meshes) = (Vec::new(), Vec::new());
     for (i, surface) in scene.surfaces.iter().enumerate() {
         match &surface.shape {
-            Shape::Plane(plane) => planes.push((i, plane.clone())),
+            Shape::Plane(plane) => planes.push((i, *plane)),
             Shape::Polygon(polygon) => meshes.push((i, Arc::new(Mesh::from_polygon(polygon)))),
             Shape::Mesh(mesh) => meshes.push((i, Arc::clone(mesh))),
         }

@@ -119,6 +119,7 @@ fn slowed(friction: &Friction, v_t: Vector3<f64>, closing: f64, c_r: f64, counte
 mod tests {
     use super::*;
     use crate::effects::restitution::Restitution;
+    use carom_geometry::rounding::UNIT_ROUNDOFF;
 
     fn material(c_r: f64, friction: Friction) -> Material {
         Material { restitution: Restitution::new(c_r).unwrap(), friction }
@@ -136,9 +137,9 @@ mod tests {
     #[test]
     fn r16_normal_and_tangential_parts_are_answered_apart() {
         let n = Vector3::new(0.6, 0.0, 0.8);
-        let v = 3.0 * Vector3::y() - 2.0 * n;
+        let v: Vector3<f64> = 3.0 * Vector3::y() - 2.0 * n;
         let after = answer(v, &[n], material(0.5, Friction::linear(0.5).unwrap()));
-        assert!((after - (1.5 * Vector3::y() + 1.0 * n)).norm() < 1e-15);
+        assert!((after - Vector3::new(0.6, 1.5, 0.8)).norm() < 1e-15);
     }
 
     #[test]
@@ -176,7 +177,7 @@ mod tests {
             let v = Vector3::new(-1.0, 0.3, -1.0);
             let mut touched = contacts(&v, &normals);
             let after = respond(v, &mut touched, &[m, m], &mut Counters::default());
-            assert!(after.norm() <= v.norm());
+            assert!(after.norm() <= v.norm() * (1.0 + 4.0 * UNIT_ROUNDOFF));
             assert!(touched.iter().all(|c| c.rate >= 0.0));
             assert!(normals.iter().all(|n| n.dot(&after) >= -1e-14), "{k}");
         }

@@ -43,9 +43,9 @@ pub fn project_offset(w: &Vector3<f64>, normals: &[Vector3<f64>], allowed: impl 
     }
     let m = normals.len();
     let lack = |i: usize| -(normals[i].dot(w) + allowed(i));
-    for i in 0..m {
+    for (i, normal) in normals.iter().enumerate() {
         let load = lack(i);
-        let v = w + normals[i] * load;
+        let v = w + normal * load;
         if load >= 0.0 && free(&v) {
             return Projection { velocity: v, pushing: [(i, load), (0, 0.0), (0, 0.0)], count: 1 };
         }

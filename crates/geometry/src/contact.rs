@@ -53,13 +53,7 @@ pub enum Contact {
 const MAX_ROUNDS: u32 = 256;
 
 /// The first f in [`from`, `to`] at which the ball touches `triangle` and closes in; `rounds` counts support planes.
-pub fn first_contact(
-    ball: &MovingBall,
-    triangle: &[Point3<f64>; 3],
-    from: f64,
-    to: f64,
-    rounds: &mut u64,
-) -> Contact {
+pub fn first_contact(ball: &MovingBall, triangle: &[Point3<f64>; 3], from: f64, to: f64, rounds: &mut u64) -> Contact {
     let path = ball.path;
     // Everything relative to the start: what is far from the origin costs no digits.
     let corners = triangle.map(|v| Point3::from(v - path.start()));

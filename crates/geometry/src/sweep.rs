@@ -249,10 +249,11 @@ impl Mesh {
                         let [a, b] = self.edge_ends(face, edge);
                         let far = if a == v { b } else { a };
                         let next = self.edge_site(face, edge);
-                        if (a == v || b == v) && bounds.iter().all(|bound| bound.next != next) {
-                            if let Some(outward) = (vertex(far) - vertex(v)).try_normalize(0.0) {
-                                bounds.push(RegionBound { outward, point: vertex(v), next });
-                            }
+                        if (a == v || b == v)
+                            && bounds.iter().all(|bound| bound.next != next)
+                            && let Some(outward) = (vertex(far) - vertex(v)).try_normalize(0.0)
+                        {
+                            bounds.push(RegionBound { outward, point: vertex(v), next });
                         }
                     }
                 }
@@ -306,18 +307,11 @@ impl Mesh {
     /// Where `site` is nearest to `centre`, taken as an infinite plane or line, and the unit normal from there to `centre`.
     /// None where the centre lies on it.
     pub fn foot(&self, site: Site, centre: &Point3<f64>) -> Option<(Point3<f64>, Vector3<f64>)> {
-        let away = match self.bend(site) {
-            Bend::Around { point, along } => {
-                let w = centre - point;
-                w - along * along.dot(&w)
-            }
-            Bend::About { point } => centre - point,
-            Bend::Flat => {
-                let face = site.face();
-                let (n, point) = (self.normal(face)?.into_inner(), self.triangle(face)[0]);
-                let height = n.dot(&(centre - point));
-                return Some((centre - n * height, if height < 0.0 { -n } else { n }));
-            }
+        let Some(away) = self.bend(site).away_from(centre) else {
+            let face = site.face();
+            let (n, point) = (self.normal(face)?.into_inner(), self.triangle(face)[0]);
+            let height = n.dot(&(centre - point));
+            return Some((centre - n * height, if height < 0.0 { -n } else { n }));
         };
         away.try_normalize(0.0).map(|n| (centre - away, n))
     }
@@ -340,6 +334,25 @@ pub enum Bend {
         /// The vertex.
         point: Point3<f64>,
     },
+}
+
+impl Bend {
+    /// From the edge or vertex to `centre`, at right angles to the edge; none on a plane.
+    pub fn away_from(&self, centre: &Point3<f64>) -> Option<Vector3<f64>> {
+        match self {
+            Bend::Flat => None,
+            Bend::Around { point, .. } | Bend::About { point } => Some(self.across(&(centre - point))),
+        }
+    }
+
+    /// The part of `v` that follows the curve: across an edge, all of it about a vertex, none on a plane.
+    pub fn across(&self, v: &Vector3<f64>) -> Vector3<f64> {
+        match self {
+            Bend::Flat => Vector3::zeros(),
+            Bend::Around { along, .. } => v - along * along.dot(v),
+            Bend::About { .. } => *v,
+        }
+    }
 }
 
 fn same_ends(a: [u32; 2], b: [u32; 2]) -> bool {

@@ -2,7 +2,7 @@
 
 use crate::cli::CheckArgs;
 use crate::error::AppError;
-use crate::mesh_file;
+use crate::mesh_file::{self, MeshFileError};
 use crate::scene::problem::{Severity, render_plain};
 use crate::scene::{self, Loaded};
 use crate::terminal::{say, styled};
@@ -30,7 +30,10 @@ pub fn check(args: &CheckArgs) -> Result<(), AppError> {
 }
 
 fn check_mesh(path: &Path) -> Result<(), AppError> {
-    let mesh = mesh_file::read(path).map_err(|e| AppError::Mesh(e.to_string()))?;
+    let mesh = mesh_file::read(path).map_err(|error| match error {
+        MeshFileError::Io { path, source } => AppError::Read { path, source },
+        error => AppError::Mesh(error.to_string()),
+    })?;
     let size = format!("{} vertices, {} faces", mesh.vertices.len(), mesh.faces.len());
     conclude(&path.display().to_string(), &size, examine(&path.display().to_string(), &mesh.vertices, &mesh.faces))
 }
