@@ -3,7 +3,7 @@
 use crate::bounds::Aabb;
 use crate::bvh::FatSegment;
 use crate::closest::{Feature, closest_point};
-use crate::contact::{Contact, MovingBall, first_contact};
+use crate::contact::{Contact, MovingBall, contact_from};
 use crate::mesh::{Fold, Mesh};
 use crate::rounding::position_bound;
 use nalgebra::{Point3, Vector3};
@@ -120,11 +120,11 @@ impl Mesh {
                 let free = free_until(face);
                 if free <= limit {
                     work.triangles += 1;
-                    let contact = first_contact(ball, &self.triangle(face), free, limit, &mut work.rounds);
+                    let contact = contact_from(ball, &self.triangle(face), free, limit, &mut work.rounds);
                     if let Contact::At { f, .. } = contact
-                        && best.is_none_or(|found| (f, face) < (found.f, found.face))
+                        && best.is_none_or(|found| (f.min(to), face) < (found.f, found.face))
                     {
-                        best = Some(FirstContact { f, face });
+                        best = Some(FirstContact { f: f.min(to), face });
                     }
                 }
                 best.map_or(f64::INFINITY, |found| (found.f - from) / (end - from))
