@@ -1,14 +1,15 @@
 //! The first contact of a ball with a mesh is that of the triangle it touches first, bit for bit, and what it touches is what is near.
 
-use carom_geometry::closest::closest_point;
+use carom_geometry::closest::{Feature, closest_point};
 use carom_geometry::contact::{Contact, MovingBall, first_contact};
 use carom_geometry::mesh::Mesh;
 use carom_geometry::path::Path;
-use carom_geometry::rounding::point_radius;
-use carom_geometry::sweep::{FirstContact, Work};
+use carom_geometry::rounding::{UNIT_ROUNDOFF, point_radius};
+use carom_geometry::sweep::{FirstContact, Site, Work};
 use carom_tests::obj;
 use carom_tests::random::Random;
 use nalgebra::{Point3, Vector3};
+use std::collections::BTreeSet;
 
 const SCENES: [(&str, &str); 5] = [
     ("spot", include_str!("../../crates/app/scenes/meshes/spot_triangulated.obj")),
@@ -23,17 +24,18 @@ fn scene(text: &str) -> Mesh {
     Mesh::new(vertices, faces).unwrap()
 }
 
-/// The first contact by asking every face.
-fn brute_force(mesh: &Mesh, ball: &MovingBall, to: f64) -> Option<FirstContact> {
-    let mut best: Option<FirstContact> = None;
+/// The first contact by asking every face, and how many faces are met at the same f.
+fn brute_force(mesh: &Mesh, ball: &MovingBall, to: f64) -> (Option<FirstContact>, u32) {
+    let (mut best, mut ties): (Option<FirstContact>, u32) = (None, 0);
     for face in 0..mesh.faces().len() as u32 {
-        if let Contact::At { f, .. } = first_contact(ball, &mesh.triangle(face), 0.0, to, &mut 0)
-            && best.is_none_or(|found| f < found.f)
-        {
-            best = Some(FirstContact { f, face });
+        let Contact::At { f, .. } = first_contact(ball, &mesh.triangle(face), 0.0, to, &mut 0) else { continue };
+        match best {
+            Some(found) if found.f < f => {}
+            Some(found) if found.f == f => ties += 1,
+            _ => (best, ties) = (Some(FirstContact { f, face }), 1),
         }
     }
-    best
+    (best, ties)
 }
 
 /// A path from around the mesh, in or out of it, towards a point of it or near it: straight, a parabola or a quartic.
@@ -52,65 +54,137 @@ fn aimed(random: &mut Random, mesh: &Mesh, degree: usize) -> Path {
     Path::from_terms(start, &terms)
 }
 
-#[derive(Default)]
-struct Tally { cases: u32, hits: u32, bad: u32 }
+/// How a series of queries went.
+#[derive(Debug, Default)]
+struct Tally {
+    cases: u32,
+    hits: u32,
+    /// Hits at which two faces or more are met at the very same f.
+    ties: u32,
+}
 
-fn compare(name: &str, mesh: &Mesh, path: &Path, radius: f64, tally: &mut Tally) {
-    let ball = MovingBall { path, radius, holds: &[] };
-    let want = brute_force(mesh, &ball, 1.0);
-    let mut work = Work::default();
-    let got = mesh.first_contact(&ball, 1.0, |_| 0.0, &mut work);
-    tally.cases += 1;
-    tally.hits += u32::from(want.is_some());
-    if got != want {
-        tally.bad += 1;
-        println!("{name} deg {} r={radius:e}: got {got:?} want {want:?} diff {:?}", path.terms().len(), got.zip(want).map(|(a,b)| a.f-b.f));
+impl Tally {
+    /// Asks both ways and fails on the first bit that differs.
+    fn compare(&mut self, mesh: &Mesh, path: &Path, radius: f64, to: f64) {
+        let ball = MovingBall { path, radius, holds: &[] };
+        let (want, ties) = brute_force(mesh, &ball, to);
+        let got = mesh.first_contact(&ball, to, |_| 0.0, &mut Work::default());
+        assert_eq!(got, want, "r = {radius:e}, to {to}, {path:?}");
+        self.cases += 1;
+        self.hits += u32::from(want.is_some());
+        self.ties += u32::from(ties > 1);
     }
 }
 
 #[test]
-fn explore_scenes() {
+fn h06_first_contacts_with_the_scene_meshes_are_those_of_brute_force() {
     let mut random = Random::new(7);
     for (name, text) in SCENES {
         let mesh = scene(text);
         let size = mesh.bounds().extent().amax();
-        let n = (400_000 / mesh.faces().len()).clamp(40, 4000);
-        for degree in [1, 2, 4] {
+        let farthest = mesh.vertices().iter().fold(0.0, |m, v| f64::max(m, v.coords.amax()));
+        // Quartics take ten times as long.
+        for (degree, work) in [(1, 400_000), (2, 400_000), (4, 50_000)] {
             let mut tally = Tally::default();
-            let t0 = std::time::Instant::now();
-            for _ in 0..n {
+            for _ in 0..(work / mesh.faces().len()).clamp(8, 1000) {
                 let path = aimed(&mut random, &mesh, degree);
-                let least = point_radius(mesh.vertices().iter().fold(0.0, |m, v| f64::max(m, v.coords.amax())));
-                let radius = if random.unit() < 0.2 { least } else { size * random.octave(-16, -2) };
-                compare(name, &mesh, &path, radius, &mut tally);
+                let points = random.below(5) == 0;
+                let radius = if points { point_radius(farthest) } else { size * random.octave(-16, -2) };
+                tally.compare(&mesh, &path, radius, if random.below(4) == 0 { random.unit() } else { 1.0 });
             }
-            println!("{name} degree {degree}: {} cases {} hits {} bad {:?}", tally.cases, tally.hits, tally.bad, t0.elapsed());
+            println!("{name}, degree {degree}: {tally:?}");
+            assert!(tally.hits * 3 > tally.cases, "too few hits prove little: {tally:?}");
         }
     }
 }
 
 #[test]
-fn explore_lattice() {
-    // ties: a flat and a stepped grid with integer coordinates, balls over lattice points and edges
-    let n = 12u32;
-    for bumpy in [false, true] {
-        let at = |k: u32| Point3::new(f64::from(k % (n + 1)), f64::from(k / (n + 1)), if bumpy { f64::from((k * 7 + k / 5) % 3) } else { 0.0 });
-        let square = |k: u32| { let a = k / n * (n + 1) + k % n; [[a, a + 1, a + n + 2], [a, a + n + 2, a + n + 1]] };
-        let mesh = Mesh::new((0..(n + 1) * (n + 1)).map(at).collect(), (0..n * n).flat_map(square).collect()).unwrap();
+fn h06_ties_between_neighbours_go_to_the_lowest_face() {
+    // A flat and a rugged grid with integer coordinates: balls meet several faces at once, at edges and at vertices.
+    const N: u32 = 12;
+    let square = |k: u32| {
+        let a = k / N * (N + 1) + k % N;
+        [[a, a + 1, a + N + 2], [a, a + N + 2, a + N + 1]]
+    };
+    for rugged in [0, 1] {
+        let height = |k: u32| f64::from(rugged * ((k * 7 + k / 5) % 3));
+        let at = |k: u32| Point3::new(f64::from(k % (N + 1)), f64::from(k / (N + 1)), height(k));
+        let vertices = (0..(N + 1) * (N + 1)).map(at).collect();
+        let mesh = Mesh::new(vertices, (0..N * N).flat_map(square).collect()).unwrap();
         let mut random = Random::new(3);
         for degree in [1, 2, 4] {
             let mut tally = Tally::default();
-            for _ in 0..3000 {
-                let half = |random: &mut Random, n: usize| random.below(n) as f64 / 2.0;
-                let start = Point3::new(half(&mut random, 26) , half(&mut random, 26), half(&mut random, 12) + 0.25);
-                let mut terms = vec![Vector3::new(half(&mut random, 21) - 5.0, half(&mut random, 21) - 5.0, half(&mut random, 21) - 8.0)];
-                if degree > 1 { terms.push(Vector3::new(0.0, 0.0, -4.0)); }
-                if degree > 2 { terms.push(Vector3::new(1.0, 0.0, -2.0)); terms.push(Vector3::new(0.5, 0.25, 1.0)); }
-                let path = Path::from_terms(start, &terms);
-                let radius = [0.25, 0.5, 1.0, 0.1, 1.0 / 3.0, point_radius(12.0)][random.below(6)];
-                compare("lattice", &mesh, &path, radius, &mut tally);
+            for _ in 0..if degree == 4 { 600 } else { 3000 } {
+                let mut half = |n: usize| random.below(n) as f64 / 2.0;
+                let start = Point3::new(half(26), half(26), half(12) + 0.25);
+                let falling = Vector3::new(half(21) - 5.0, half(21) - 5.0, half(21) - 8.0);
+                let further = [Vector3::new(0.0, 0.0, -4.0), Vector3::new(1.0, 0.0, -2.0), Vector3::new(0.5, 0.25, 1.0)];
+                let terms: Vec<_> = std::iter::once(falling).chain(further).take(degree).collect();
+                let radius = [0.25, 0.5, 1.0, 0.1, 1.0 / 3.0, point_radius(f64::from(N))][random.below(6)];
+                tally.compare(&mesh, &Path::from_terms(start, &terms), radius, 1.0);
             }
-            println!("lattice bumpy {bumpy} degree {degree}: {} cases {} hits {} bad", tally.cases, tally.hits, tally.bad);
+            println!("grid, rugged {rugged}, degree {degree}: {tally:?}");
+            assert!(tally.ties * 20 > tally.hits, "the case is too easy: {tally:?}");
         }
+    }
+}
+
+/// What of the mesh is within `reach` of `centre`, each place once, by asking every face; and nothing that is the border of another.
+fn touched_by_brute_force(mesh: &Mesh, centre: &Point3<f64>, reach: f64) -> BTreeSet<Site> {
+    let mut sites = BTreeSet::new();
+    for face in 0..mesh.faces().len() as u32 {
+        let closest = closest_point(&mesh.triangle(face).map(|v| Point3::from(v - centre)), &Point3::origin());
+        if closest.offset.norm() <= reach {
+            sites.insert(match closest.feature {
+                Feature::Face => Site::Face(face),
+                Feature::Edge(side) => {
+                    let (face, edge) = mesh.edge(face, side.into()).owner;
+                    Site::Edge { face, edge: edge as u8 }
+                }
+                Feature::Vertex(corner) => {
+                    let vertex = mesh.faces()[face as usize][usize::from(corner)];
+                    Site::Vertex { vertex, face: mesh.vertex_faces(vertex)[0] }
+                }
+            });
+        }
+    }
+    let faces = |site: &Site| mesh.faces_at(*site);
+    let larger = |site: &Site, other: &Site| match (site, other) {
+        (Site::Edge { .. } | Site::Vertex { .. }, Site::Face(face)) => faces(site).contains(face),
+        (Site::Vertex { vertex, .. }, Site::Edge { face, edge }) => {
+            mesh.edge(*face, (*edge).into()).vertices.contains(vertex)
+        }
+        _ => false,
+    };
+    sites.iter().filter(|site| !sites.iter().any(|other| larger(site, other))).copied().collect()
+}
+
+#[test]
+fn h28_touches_are_those_of_brute_force() {
+    let mut random = Random::new(11);
+    for (name, text) in SCENES {
+        let mesh = scene(text);
+        let size = mesh.bounds().extent().amax();
+        let (mut touching, mut several) = (0, 0);
+        for _ in 0..(600_000 / mesh.faces().len()).clamp(40, 2000) {
+            let face = random.below(mesh.faces().len()) as u32;
+            let corners = mesh.triangle(face);
+            let on = if random.below(4) == 0 { corners[random.below(3)] } else { random.in_triangle(&corners) };
+            let (radius, tolerance) = (size * random.octave(-12, -2), size * random.octave(-40, -6));
+            let centre = on + random.vector(1.0).normalize() * (radius * random.within(0.5, 1.1));
+            let touches = mesh.touches(&centre, radius, tolerance, &mut Work::default());
+            let sites: Vec<Site> = touches.iter().map(|touch| touch.site).collect();
+            let want: Vec<Site> = touched_by_brute_force(&mesh, &centre, radius + tolerance).into_iter().collect();
+            assert_eq!(sites, want, "r = {radius:e} + {tolerance:e} at {centre}");
+            for touch in touches {
+                assert!((touch.normal.norm() - 1.0).abs() <= 8.0 * UNIT_ROUNDOFF);
+                let (foot, _) = mesh.foot(touch.site, &centre).unwrap();
+                assert!(touch.normal.dot(&(centre - foot)) > 0.0, "{touch:?} points away from the ball");
+            }
+            touching += usize::from(!sites.is_empty());
+            several += usize::from(sites.len() > 1);
+        }
+        println!("{name}: {touching} balls touch it, {several} of them in several places");
+        assert!(touching > 10 && several > 0);
     }
 }
