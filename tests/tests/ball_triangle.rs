@@ -2,7 +2,7 @@
 
 use carom_geometry::contact::{Contact, MovingBall, first_contact};
 use carom_geometry::path::Path;
-use carom_geometry::rounding::{UNIT_ROUNDOFF, contact_bound, point_radius};
+use carom_geometry::rounding::{UNIT_ROUNDOFF, contact_bound, contact_doubt, point_radius};
 use carom_geometry::triangle::{Feature, closest_point};
 use carom_tests::data::{csv, number};
 use carom_tests::exact;
@@ -12,9 +12,10 @@ use std::collections::BTreeMap;
 const HEADER: &str = "id,category,cx,cy,cz,vx,vy,vz,gx,gy,gz,r,ax,ay,az,bx,by,bz,ex,ey,ez,tmax,start,hit,t_lo,t_hi,t_decimal,\
                       feature,multiplicity,n_boundary_roots";
 
-/// How far from touching a reported contact may be, in contact bounds: planes are moved by up to two, and what is as near as that again
-/// counts as touching; the last is for the rounding of f.
-const DOUBT: f64 = 5.0;
+/// How far from touching a reported contact may be, in contact bounds.
+fn most_doubt() -> f64 {
+    contact_doubt(1.0) / contact_bound(1.0)
+}
 
 /// Support planes that the slowest case, a graze, may take.
 const MOST_ROUNDS: u64 = 64;
@@ -155,19 +156,19 @@ fn h03_contacts_are_early_by_doubt_only() {
         let answer = case.ask(1.0);
         let Contact::At { f, .. } = answer.contact else { panic!("{} is missed", case.name) };
         let doubt = case.doubt(&answer, f);
-        assert!(doubt <= DOUBT, "{}: {doubt} bounds from touching at f = {f:e}", case.name);
+        assert!(doubt <= most_doubt(), "{}: {doubt} bounds from touching at f = {f:e}", case.name);
         worst_doubt = worst_doubt.max(doubt);
         // Where the ball does not graze, so near is also so early. What stands for a point has its own radius to be early by.
         let (speed, sine) = case.closing(low);
         if sine >= 0.1 && case.radius > 0.0 {
             let early = (low - f) * speed / case.bound(&answer, f);
-            assert!(early <= DOUBT, "{}: early by {early} bounds", case.name);
+            assert!(early <= most_doubt(), "{}: early by {early} bounds", case.name);
             transversal += 1;
             worst_early = worst_early.max(early);
             worst_relative = worst_relative.max((low - f) / low);
         } else if sine >= 0.1 && case.feature == "face" {
             let early = (low - f) * speed;
-            let allowed = answer.radius * 1.1 + DOUBT * case.bound(&answer, f);
+            let allowed = answer.radius * 1.1 + most_doubt() * case.bound(&answer, f);
             assert!(early <= allowed, "{}: early by {early:e}, above {allowed:e}", case.name);
         }
     }
@@ -189,7 +190,7 @@ fn h03_false_contacts_are_grazes_in_doubt() {
             Contact::Miss => misses += 1,
             Contact::At { f, .. } => {
                 let doubt = case.doubt(&answer, f);
-                assert!(doubt <= DOUBT, "{}: {doubt} bounds from touching at f = {f:e}", case.name);
+                assert!(doubt <= most_doubt(), "{}: {doubt} bounds from touching at f = {f:e}", case.name);
                 *doubtful.entry((case.category, case.radius == 0.0)).or_default() += 1;
             }
         }
@@ -222,7 +223,7 @@ fn h01_h02_a_start_in_contact_is_answered_by_closing_in() {
             Contact::At { f, .. } => {
                 // It leaves, stays away, and is back.
                 let back = case.doubt(&answer, f);
-                assert!((-1.0..=DOUBT).contains(&back), "{}: {back} bounds from touching at f = {f:e}", case.name);
+                assert!((-1.0..=most_doubt()).contains(&back), "{}: {back} bounds from touching at f = {f:e}", case.name);
                 let free: Vec<bool> =
                     (0..64).map(|k| case.doubt(&answer, f * f64::from(k) / 64.0) > 0.0).collect();
                 assert!(free.is_sorted(), "{}: touches before f = {f:e}: {free:?}", case.name);

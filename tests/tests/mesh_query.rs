@@ -188,3 +188,22 @@ fn h28_touches_are_those_of_brute_force() {
         assert!(touching > 10 && several > 0);
     }
 }
+
+#[test]
+fn h03_grazes_beside_the_whole_mesh_are_those_of_brute_force() {
+    // A square of two faces; the ball flies by, beside its rim or above it, by a few roundings more or less than its radius.
+    let vertices = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[x, y]| Point3::new(x, y, 0.0)).to_vec();
+    let mesh = Mesh::new(vertices, vec![[0, 1, 2], [0, 2, 3]]).unwrap();
+    let mut tally = Tally::default();
+    for radius in [0.5, 0.25, 1.0 / 3.0] {
+        for rounding in -400..400 {
+            let beside = -radius - f64::from(rounding) * UNIT_ROUNDOFF;
+            let line = Path::line(Point3::new(0.25, beside, 2.0), Vector3::new(0.25, 0.0, -4.0));
+            tally.compare(&mesh, &line, radius, 1.0);
+            let rising = Path::parabola(Point3::new(0.25, 0.25, 1.0 - beside), Vector3::new(0.5, 0.0, -4.0), Vector3::new(0.0, 0.0, 4.0));
+            tally.compare(&mesh, &rising, radius, 1.0);
+        }
+    }
+    println!("grazes: {tally:?}");
+    assert!(tally.hits > 0 && tally.hits < tally.cases);
+}

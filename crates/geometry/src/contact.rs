@@ -40,9 +40,9 @@ pub struct MovingBall<'a> {
 pub enum Contact {
     /// No contact in [0, to]: certified by a plane.
     Miss,
-    /// First contact at `f`: the ball is at most five times [`contact_bound`] from touching there, and on an edge or a vertex it has
-    /// not touched before. On a face f is the entry into the face's own plane, to the rounding of its equation: the ball may overlap
-    /// by one [`contact_bound`].
+    /// First contact at `f`: the ball is at most [`contact_doubt`](crate::rounding::contact_doubt) from touching there, and on an
+    /// edge or a vertex it has not touched before. On a face f is the entry into the face's own plane, to the rounding of its
+    /// equation: the ball may overlap by one [`contact_bound`].
     At {
         /// Where on the path.
         f: f64,

@@ -5,7 +5,7 @@ use crate::bvh::FatSegment;
 use crate::closest::{Feature, closest_point};
 use crate::contact::{Contact, MovingBall, contact_from};
 use crate::mesh::{Fold, Mesh};
-use crate::rounding::position_bound;
+use crate::rounding::{contact_doubt, position_bound};
 use nalgebra::{Point3, Vector3};
 
 /// A place of a mesh: a face, an edge or a vertex. Each edge and vertex has one name, whichever face it was found by.
@@ -92,6 +92,8 @@ impl Mesh {
         work: &mut Work,
     ) -> Option<FirstContact> {
         let start = ball.path.start();
+        let corners = [self.bounds().min(), self.bounds().max()];
+        let size = corners.map(|corner| (corner - start).amax()).into_iter().fold(ball.radius, f64::max);
         let sagitta_limit = SAGITTA_SHARE * ball.radius.max(self.face_size());
         let mut best: Option<FirstContact> = None;
         // Front to back: the stretch to look at next is the last of the stack.
@@ -102,7 +104,9 @@ impl Mesh {
             let (from, end) = stack[depth];
             let chord = ball.path.chord(from, end);
             let (a, b) = (start + chord.from, start + chord.to);
-            let margin = position_bound(a.coords.amax().max(b.coords.amax()).max(ball.path.reach(end)));
+            // What a contact in doubt may be off by counts as near, so that the boxes leave out no face that would report one.
+            let reach = ball.path.reach(end);
+            let margin = position_bound(a.coords.amax().max(b.coords.amax()).max(reach)) + contact_doubt(size + reach);
             let radius = ball.radius + chord.sagitta + margin;
             if !Aabb::of_points(&[a, b]).inflate(radius).intersects(self.bounds()) {
                 continue;
