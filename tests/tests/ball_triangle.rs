@@ -116,7 +116,7 @@ fn name(feature: Feature) -> &'static str {
 }
 
 #[test]
-fn h16_contacts_are_never_missed_and_never_late() {
+fn r28_contacts_are_never_missed_and_never_late() {
     let (mut hits, mut features, mut worst_overlap, mut worst_late, mut most_rounds) = (0, 0, 0.0f64, 0.0f64, 0);
     for case in Case::all() {
         let Some((_, high)) = case.contact.filter(|_| case.starts == "outside") else { continue };
@@ -149,7 +149,7 @@ fn h16_contacts_are_never_missed_and_never_late() {
 }
 
 #[test]
-fn h03_contacts_are_early_by_doubt_only() {
+fn r27_contacts_are_early_by_doubt_only() {
     let (mut worst_doubt, mut worst_early, mut transversal, mut worst_relative) = (0.0f64, 0.0f64, 0, 0.0f64);
     for case in Case::all() {
         let Some((low, _)) = case.contact.filter(|_| case.starts == "outside") else { continue };
@@ -223,9 +223,12 @@ fn h01_h02_a_start_in_contact_is_answered_by_closing_in() {
             Contact::At { f, .. } => {
                 // It leaves, stays away, and is back.
                 let back = case.doubt(&answer, f);
-                assert!((-1.0..=most_doubt()).contains(&back), "{}: {back} bounds from touching at f = {f:e}", case.name);
-                let free: Vec<bool> =
-                    (0..64).map(|k| case.doubt(&answer, f * f64::from(k) / 64.0) > 0.0).collect();
+                assert!(
+                    (-1.0..=most_doubt()).contains(&back),
+                    "{}: {back} bounds from touching at f = {f:e}",
+                    case.name
+                );
+                let free: Vec<bool> = (0..64).map(|k| case.doubt(&answer, f * f64::from(k) / 64.0) > 0.0).collect();
                 assert!(free.is_sorted(), "{}: touches before f = {f:e}: {free:?}", case.name);
                 later += 1;
             }

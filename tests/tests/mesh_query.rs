@@ -118,7 +118,8 @@ fn h06_ties_between_neighbours_go_to_the_lowest_face() {
                 let mut half = |n: usize| random.below(n) as f64 / 2.0;
                 let start = Point3::new(half(26), half(26), half(12) + 0.25);
                 let falling = Vector3::new(half(21) - 5.0, half(21) - 5.0, half(21) - 8.0);
-                let further = [Vector3::new(0.0, 0.0, -4.0), Vector3::new(1.0, 0.0, -2.0), Vector3::new(0.5, 0.25, 1.0)];
+                let further =
+                    [Vector3::new(0.0, 0.0, -4.0), Vector3::new(1.0, 0.0, -2.0), Vector3::new(0.5, 0.25, 1.0)];
                 let terms: Vec<_> = std::iter::once(falling).chain(further).take(degree).collect();
                 let radius = [0.25, 0.5, 1.0, 0.1, 1.0 / 3.0, point_radius(f64::from(N))][random.below(6)];
                 tally.compare(&mesh, &Path::from_terms(start, &terms), radius, 1.0);
@@ -200,7 +201,11 @@ fn h03_grazes_beside_the_whole_mesh_are_those_of_brute_force() {
             let beside = -radius - f64::from(rounding) * UNIT_ROUNDOFF;
             let line = Path::line(Point3::new(0.25, beside, 2.0), Vector3::new(0.25, 0.0, -4.0));
             tally.compare(&mesh, &line, radius, 1.0);
-            let rising = Path::parabola(Point3::new(0.25, 0.25, 1.0 - beside), Vector3::new(0.5, 0.0, -4.0), Vector3::new(0.0, 0.0, 4.0));
+            let rising = Path::parabola(
+                Point3::new(0.25, 0.25, 1.0 - beside),
+                Vector3::new(0.5, 0.0, -4.0),
+                Vector3::new(0.0, 0.0, 4.0),
+            );
             tally.compare(&mesh, &rising, radius, 1.0);
         }
     }
