@@ -129,7 +129,7 @@ impl<O: Observer> Walk<'_, O> {
         }
         self.standstill += 1;
         if self.standstill > MAX_STANDSTILL {
-            self.ending = Some(Ending::UnresolvedContact);
+            self.give_up(Ending::UnresolvedContact, EventKind::UnresolvedContact);
         }
     }
 
@@ -142,12 +142,17 @@ impl<O: Observer> Walk<'_, O> {
         self.travel(&step, step.to, Motion::Resting, Some(end));
     }
 
+    /// Ends the simulation of this ball by a guard, and says so where it is in contact.
+    fn give_up(&mut self, ending: Ending, kind: EventKind) {
+        self.ending = Some(ending);
+        if let Some(contact) = self.contacts.first().copied() {
+            self.tell(kind, &contact, self.state.velocity);
+        }
+    }
+
     fn tell(&mut self, kind: EventKind, contact: &Contact, velocity_in: Vector3<f64>) {
         let numbered = self.plan.surfaces[contact.surface].numbered;
         self.events += 1;
-        if self.events >= EVENT_BUDGET {
-            self.ending = Some(Ending::EventBudget);
-        }
         self.observer.event(&Event {
             time: self.clock.now(),
             kind,
@@ -158,5 +163,8 @@ impl<O: Observer> Walk<'_, O> {
             velocity_in,
             velocity: self.state.velocity,
         });
+        if self.events == EVENT_BUDGET {
+            self.give_up(Ending::EventBudget, EventKind::EventBudget);
+        }
     }
 }

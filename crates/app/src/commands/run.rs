@@ -34,11 +34,12 @@ pub fn run(args: &RunArgs) -> Result<(), AppError> {
         |ball, recorder, outcome| {
             tally.add(ball, &outcome);
             progress.step();
-            match files.write(&recorder) {
-                Ok(Demand::Open) => ControlFlow::Continue(()),
-                Ok(Demand::Closed) => ControlFlow::Break(stopped = Some(Ok(()))),
-                Err(error) => ControlFlow::Break(stopped = Some(Err(error))),
-            }
+            stopped = match files.write(&recorder) {
+                Ok(Demand::Open) => return ControlFlow::Continue(()),
+                Ok(Demand::Closed) => Some(Ok(())),
+                Err(error) => Some(Err(error)),
+            };
+            ControlFlow::Break(())
         },
     );
     progress.finish();

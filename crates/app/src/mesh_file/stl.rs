@@ -183,7 +183,7 @@ mod tests {
         for end in 0..ASCII.len() {
             // Between its solids an ASCII file is complete.
             let depth = ASCII[..end].matches("solid").count() - 2 * ASCII[..end].matches("endsolid").count();
-            assert!(read(ASCII[..end].as_bytes()).is_err() || depth == 0, "{end}");
+            assert!(read(&ASCII.as_bytes()[..end]).is_err() || depth == 0, "{end}");
         }
     }
 }

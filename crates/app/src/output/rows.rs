@@ -82,6 +82,8 @@ fn kind(kind: EventKind) -> &'static str {
         EventKind::Rest => "rest",
         EventKind::Leave => "leave",
         EventKind::Wake => "wake",
+        EventKind::EventBudget => "event-budget",
+        EventKind::UnresolvedContact => "unresolved-contact",
         _ => "other",
     }
 }
