@@ -6,6 +6,7 @@ use carom_geometry::rounding::{UNIT_ROUNDOFF, contact_bound, contact_doubt, poin
 use carom_geometry::triangle::{Feature, closest_point};
 use carom_tests::data::{csv, number};
 use carom_tests::exact;
+use carom_tests::random::Random;
 use nalgebra::{Point3, Vector3};
 use std::collections::BTreeMap;
 
@@ -236,4 +237,51 @@ fn h01_h02_a_start_in_contact_is_answered_by_closing_in() {
     }
     println!("starts in contact: {now} close in and collide now, {later} come back, {never} never do");
     assert!(now > 0 && later > 0 && never > 0);
+}
+
+#[test]
+fn r27_r28_quartic_paths_meet_triangles_on_time() {
+    const CASES: u32 = 1500;
+    let mut random = Random::new(4);
+    let (mut hits, mut worst_overlap, mut worst_doubt) = (0, 0.0f64, 0.0f64);
+    for case in 0..CASES {
+        let triangle = random.triangle(1.0);
+        let radius = random.octave(-8, 0);
+        let start = random.point(2.0);
+        let terms: Vec<Vector3<f64>> = (0..3 + case % 2).map(|_| random.vector(4.0)).collect();
+        let path = Path::from_terms(start, &terms);
+        let ball = MovingBall { path: &path, radius, holds: &[] };
+        let gap = |f: f64| closest_point(&triangle, &path.at(f)).offset.norm() - radius;
+        if gap(0.0) <= 0.0 {
+            continue;
+        }
+        let size = triangle.iter().map(|q| (q - start).amax()).fold(radius, f64::max);
+        let contact = first_contact(&ball, &triangle, 0.0, 1.0, &mut 0);
+        let free_until = match contact {
+            Contact::Miss => 1.0,
+            Contact::At { f, feature } => {
+                let bound = contact_bound(size + path.reach(f));
+                let doubt = exact::clearance(&triangle, &exact::on_path(&start, &terms, f), radius) / bound;
+                let least = if feature == Feature::Face { -1.0 } else { 0.0 };
+                assert!(
+                    (least..=most_doubt()).contains(&doubt),
+                    "{doubt} bounds: {contact:?} {triangle:?} {path:?} {radius}"
+                );
+                hits += 1;
+                (worst_overlap, worst_doubt) = (worst_overlap.max(-doubt), worst_doubt.max(doubt));
+                f
+            }
+        };
+        for k in 0..256 {
+            let f = free_until * f64::from(k) / 256.0;
+            assert!(
+                gap(f) > -contact_bound(size + path.reach(f)),
+                "{contact:?}, but it touches at {f}: {triangle:?} {path:?}"
+            );
+        }
+    }
+    println!(
+        "{hits} contacts of cubics and quartics: an overlap of {worst_overlap} bounds, {worst_doubt} from touching at worst"
+    );
+    assert!(hits > CASES / 8);
 }
