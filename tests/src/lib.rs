@@ -1,6 +1,8 @@
 //! What the cross-crate tests share.
 
 pub mod data;
+pub mod exact;
 pub mod nasty;
 pub mod obj;
+pub mod random;
 pub mod sources;

@@ -3,9 +3,9 @@
 use crate::bounds::Aabb;
 use crate::bvh::FatSegment;
 use crate::closest::{Feature, closest_point};
-use crate::contact::{Contact, MovingBall, first_contact};
+use crate::contact::{Contact, MovingBall, contact_from};
 use crate::mesh::{Fold, Mesh};
-use crate::rounding::position_bound;
+use crate::rounding::{contact_doubt, position_bound};
 use nalgebra::{Point3, Vector3};
 
 /// A place of a mesh: a face, an edge or a vertex. Each edge and vertex has one name, whichever face it was found by.
@@ -92,6 +92,8 @@ impl Mesh {
         work: &mut Work,
     ) -> Option<FirstContact> {
         let start = ball.path.start();
+        let corners = [self.bounds().min(), self.bounds().max()];
+        let size = corners.map(|corner| (corner - start).amax()).into_iter().fold(ball.radius, f64::max);
         let sagitta_limit = SAGITTA_SHARE * ball.radius.max(self.face_size());
         let mut best: Option<FirstContact> = None;
         // Front to back: the stretch to look at next is the last of the stack.
@@ -102,7 +104,9 @@ impl Mesh {
             let (from, end) = stack[depth];
             let chord = ball.path.chord(from, end);
             let (a, b) = (start + chord.from, start + chord.to);
-            let margin = position_bound(a.coords.amax().max(b.coords.amax()).max(ball.path.reach(end)));
+            // What a contact in doubt may be off by counts as near, so that the boxes leave out no face that would report one.
+            let reach = ball.path.reach(end);
+            let margin = position_bound(a.coords.amax().max(b.coords.amax()).max(reach)) + contact_doubt(size + reach);
             let radius = ball.radius + chord.sagitta + margin;
             if !Aabb::of_points(&[a, b]).inflate(radius).intersects(self.bounds()) {
                 continue;
@@ -120,11 +124,11 @@ impl Mesh {
                 let free = free_until(face);
                 if free <= limit {
                     work.triangles += 1;
-                    let contact = first_contact(ball, &self.triangle(face), free, limit, &mut work.rounds);
+                    let contact = contact_from(ball, &self.triangle(face), free, limit, &mut work.rounds);
                     if let Contact::At { f, .. } = contact
-                        && best.is_none_or(|found| (f, face) < (found.f, found.face))
+                        && best.is_none_or(|found| (f.min(to), face) < (found.f, found.face))
                     {
-                        best = Some(FirstContact { f, face });
+                        best = Some(FirstContact { f: f.min(to), face });
                     }
                 }
                 best.map_or(f64::INFINITY, |found| (found.f - from) / (end - from))
