@@ -4,5 +4,7 @@ pub mod data;
 pub mod exact;
 pub mod nasty;
 pub mod obj;
+pub mod oracle;
 pub mod random;
 pub mod sources;
+pub mod stage;

@@ -99,7 +99,11 @@ pub fn merge_angle_squared(tolerance: f64, radius: f64) -> f64 {
 
 /// Whether a velocity and an acceleration in contact are parallel to rounding, so that the path is straight.
 pub fn parallel(a: &Vector3<f64>, v: &Vector3<f64>) -> bool {
-    a.cross(v).norm() <= 16.0 * UNIT_ROUNDOFF * a.norm() * v.norm()
+    // Of unit vectors: a product of four small numbers would vanish in a small scene.
+    match (a.try_normalize(0.0), v.try_normalize(0.0)) {
+        (Some(a), Some(v)) => a.cross(&v).norm() <= 16.0 * UNIT_ROUNDOFF,
+        _ => true,
+    }
 }
 
 /// Error allowed per step of a sliding motion that has no closed form, relative to the motion.

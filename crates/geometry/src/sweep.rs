@@ -7,6 +7,7 @@ use crate::contact::{Contact, MovingBall, contact_from};
 use crate::mesh::{Fold, Mesh};
 use crate::rounding::{contact_doubt, position_bound};
 use nalgebra::{Point3, Vector3};
+use std::cmp::Ordering;
 
 /// A place of a mesh: a face, an edge or a vertex. Each edge and vertex has one name, whichever face it was found by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -156,7 +157,11 @@ impl Mesh {
                 found.push((self.site(face, closest.feature), closest.offset));
             }
         });
-        found.sort_by_key(|(site, _)| *site);
+        // Of the offsets to an edge or a vertex from its faces, which differ by rounding, the same one in whatever order they come.
+        let order = |a: &Vector3<f64>, b: &Vector3<f64>| {
+            a.iter().zip(b.iter()).map(|(a, b)| a.total_cmp(b)).find(|o| o.is_ne()).unwrap_or(Ordering::Equal)
+        };
+        found.sort_by(|(a, u), (b, v)| a.cmp(b).then_with(|| order(u, v)));
         found.dedup_by_key(|(site, _)| *site);
         let hidden = |site: &Site| found.iter().any(|(other, _)| self.hides(other, site));
         found
@@ -298,7 +303,10 @@ impl Mesh {
             Site::Face(_) => Bend::Flat,
             Site::Edge { face, edge } if self.fold(face, edge.into()) == Fold::Flat => Bend::Flat,
             Site::Edge { face, edge } => {
-                let [a, b] = self.edge_ends(face, edge).map(|v| self.vertices()[v as usize]);
+                // From the lower vertex to the higher: the same bits from whichever face the edge is seen.
+                let mut ends = self.edge_ends(face, edge);
+                ends.sort_unstable();
+                let [a, b] = ends.map(|v| self.vertices()[v as usize]);
                 match (b - a).try_normalize(0.0) {
                     Some(along) => Bend::Around { point: a, along },
                     None => Bend::About { point: a },
@@ -322,7 +330,9 @@ impl Mesh {
     pub fn foot(&self, site: Site, centre: &Point3<f64>) -> Option<(Point3<f64>, Vector3<f64>)> {
         let Some(away) = self.bend(site).away_from(centre) else {
             let face = site.face();
-            let (n, point) = (self.normal(face)?.into_inner(), self.triangle(face)[0]);
+            // From the lowest of its vertices: the same bits with whichever of them the face begins.
+            let [a, b, c] = self.faces()[face as usize];
+            let (n, point) = (self.normal(face)?.into_inner(), self.vertices()[a.min(b).min(c) as usize]);
             let height = n.dot(&(centre - point));
             return Some((centre - n * height, if height < 0.0 { -n } else { n }));
         };

@@ -3,6 +3,7 @@
 use super::{Settling, Walk};
 use crate::body::State;
 use crate::contacts::{Contact, Contacts, MAX_CONTACTS};
+use crate::effects::friction::ContactFriction;
 use crate::events::{EventKind, Motion};
 use crate::integrators::{Step, exact};
 use crate::observer::Observer;
@@ -23,8 +24,8 @@ impl<O: Observer> Walk<'_, O> {
             let contact = &carrier.contact;
             let pressed = -contact.normal.dot(&a) - carrier.centripetal(&self.state.velocity);
             carrying[i] = self.ends_bouncing(contact, pressed);
-            if carrying[i] && contact.rate > 0.0 {
-                let c_r = self.plan.surfaces[contact.surface].material.restitution.coefficient();
+            let c_r = self.plan.surfaces[contact.surface].material.restitution.coefficient();
+            if carrying[i] && contact.rate > 0.0 && c_r < 1.0 {
                 let seconds = 2.0 * contact.rate / (pressed * (1.0 - c_r));
                 settling = Some(Settling { seconds, closing: contact.rate, contact: i });
             }
@@ -55,7 +56,10 @@ impl<O: Observer> Walk<'_, O> {
     /// the rest test, for the normal speed; the fourth tells sliding from resting).
     fn ends_bouncing(&mut self, contact: &Contact, pressed: f64) -> bool {
         self.counters.rest += 1;
-        let c_r = self.plan.surfaces[contact.surface].material.restitution.coefficient();
+        // What loses nothing bounces for ever. An elastic surface with friction loses in a corner, without end.
+        let material = &self.plan.surfaces[contact.surface].material;
+        let smooth = material.friction.in_contact() == ContactFriction::Sliding(0.0);
+        let loses = material.restitution.coefficient() < 1.0 || !smooth;
         let thresholds = self.plan.rest.at(pressed.max(0.0));
         let still = self.state.velocity == Vector3::zeros();
         if contact.rate == 0.0 {
@@ -63,7 +67,7 @@ impl<O: Observer> Walk<'_, O> {
         }
         let hop = contact.rate * contact.rate / (2.0 * pressed);
         let resolved = self.integrator.timestep().map_or(0.0, |h| least_hop(pressed, h));
-        pressed > 0.0 && c_r < 1.0 && (contact.rate <= thresholds.speed || hop <= resolved)
+        pressed > 0.0 && loses && (contact.rate <= thresholds.speed || hop <= resolved)
     }
 
     /// The contacts as carriers.
