@@ -126,7 +126,14 @@ fn r12_the_order_of_the_faces_changes_nothing_but_their_numbers() {
         let vertices: Vec<Point3<f64>> = vertices.into_iter().map(|v| Point3::new(v.z, v.x, v.y)).collect();
         let other = permuted(&faces, step);
         let sorted = |faces: &[[u32; 3]]| {
-            let mut all: Vec<_> = faces.iter().map(|f| { let mut f = *f; f.sort(); f }).collect();
+            let mut all: Vec<_> = faces
+                .iter()
+                .map(|f| {
+                    let mut f = *f;
+                    f.sort();
+                    f
+                })
+                .collect();
             all.sort();
             all
         };

@@ -173,7 +173,7 @@ fn h28_touches_are_those_of_brute_force() {
             let on = if random.below(4) == 0 { corners[random.below(3)] } else { random.in_triangle(&corners) };
             let (radius, tolerance) = (size * random.octave(-12, -2), size * random.octave(-40, -6));
             let centre = on + random.vector(1.0).normalize() * (radius * random.within(0.5, 1.1));
-            let touches = mesh.touches(&centre, radius, tolerance, &mut Work::default());
+            let touches = mesh.touches(&centre, &nalgebra::Vector3::zeros(), radius, tolerance, &mut Work::default());
             let sites: Vec<Site> = touches.iter().map(|touch| touch.site).collect();
             let want: Vec<Site> = touched_by_brute_force(&mesh, &centre, radius + tolerance).into_iter().collect();
             assert_eq!(sites, want, "r = {radius:e} + {tolerance:e} at {centre}");

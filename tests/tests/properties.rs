@@ -15,7 +15,13 @@ use proptest::test_runner::RngSeed;
 fn cases(n: u32) -> ProptestConfig {
     // Rejected cases are counted: more than one in four fails.
     let max_global_rejects = n / 4;
-    ProptestConfig { cases: n, max_global_rejects, failure_persistence: None, rng_seed: RngSeed::Fixed(3), ..ProptestConfig::default() }
+    ProptestConfig {
+        cases: n,
+        max_global_rejects,
+        failure_persistence: None,
+        rng_seed: RngSeed::Fixed(3),
+        ..ProptestConfig::default()
+    }
 }
 
 /// A room with an oblique ceiling, gravity in any direction, and a ball.

@@ -9,7 +9,7 @@
 use crate::clearance::{Clearance, Entry};
 use crate::closest::{Feature, closest_point};
 use crate::path::Path;
-use crate::rounding::{UNIT_ROUNDOFF, contact_bound};
+use crate::rounding::{UNIT_ROUNDOFF, contact_bound, hold_bound};
 use nalgebra::{Point3, Vector3};
 
 /// A plane the ball is known to touch at the start of its path: the contact it just had, or has.
@@ -33,7 +33,7 @@ impl Hold {
     fn hides(&self, triangle: &[Point3<f64>; 3]) -> bool {
         triangle.iter().all(|v| {
             let d = v - self.point;
-            self.normal.dot(&d) <= self.slack.max(contact_bound(d.amax()))
+            self.normal.dot(&d) <= self.slack + hold_bound(d.amax())
         })
     }
 }

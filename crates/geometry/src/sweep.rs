@@ -141,11 +141,20 @@ impl Mesh {
         best
     }
 
-    /// What a ball of `radius` at `centre` touches, to within `tolerance`, in the order of the sites.
+    /// What a ball of `radius` at `centre`, moving along `heading`, touches, to within `tolerance`, in the order of the sites.
     ///
+    /// Where rounding decides between a face and its border, it is what the ball moves to.
     /// An edge counts only where none of its faces is touched itself, and a vertex only where none of its edges and faces is: so
     /// the inner edges of a flat or hollow surface do not show.
-    pub fn touches(&self, centre: &Point3<f64>, radius: f64, tolerance: f64, work: &mut Work) -> Vec<Touch> {
+    pub fn touches(
+        &self,
+        centre: &Point3<f64>,
+        heading: &Vector3<f64>,
+        radius: f64,
+        tolerance: f64,
+        work: &mut Work,
+    ) -> Vec<Touch> {
+        let ahead = Point3::from(heading.try_normalize(0.0).unwrap_or_else(Vector3::zeros) * tolerance);
         let reach = radius + tolerance;
         let mut found: Vec<(Site, Vector3<f64>)> = Vec::new();
         let around = Aabb::of_points(&[*centre]).inflate(reach + position_bound(centre.coords.amax() + reach));
@@ -154,7 +163,14 @@ impl Mesh {
             let local = self.triangle(face).map(|v| Point3::from(v - centre));
             let closest = closest_point(&local, &Point3::origin());
             if closest.offset.norm() <= reach {
-                found.push((self.site(face, closest.feature), closest.offset));
+                let site = match closest.feature {
+                    // Rounding found the edge: in a fold that rises towards the ball, it is the face that is touched.
+                    Feature::Edge(edge) if self.rises(face, edge, &closest.offset) => Site::Face(face),
+                    Feature::Face => Site::Face(face),
+                    // Face before edge before vertex.
+                    feature => self.site(face, feature.min(closest_point(&local, &ahead).feature)),
+                };
+                found.push((site, closest.offset));
             }
         });
         // Of the offsets to an edge or a vertex from its faces, which differ by rounding, the same one in whatever order they come.
@@ -169,6 +185,13 @@ impl Mesh {
             .filter(|(site, _)| !hidden(site))
             .filter_map(|&(site, away)| self.normal_at(site, &away).map(|normal| Touch { site, normal }))
             .collect()
+    }
+
+    /// Whether the fold at `edge` of `face` is hollow on the side that `away` points to.
+    fn rises(&self, face: u32, edge: u8, away: &Vector3<f64>) -> bool {
+        let fold = self.fold(face, edge.into());
+        let front = self.normal(face).is_some_and(|n| n.dot(away) >= 0.0);
+        (if front { fold } else { fold.from_back() }) == Fold::Concave
     }
 
     /// The one name of a feature of `face`.
