@@ -3,9 +3,9 @@
 use crate::bounds::Aabb;
 use crate::bvh::FatSegment;
 use crate::closest::{Feature, closest_point};
-use crate::contact::{Contact, MovingBall, first_contact};
+use crate::contact::{Contact, MovingBall, contact_from};
 use crate::mesh::{Fold, Mesh};
-use crate::rounding::position_bound;
+use crate::rounding::{contact_doubt, position_bound};
 use nalgebra::{Point3, Vector3};
 use std::cmp::Ordering;
 
@@ -93,6 +93,8 @@ impl Mesh {
         work: &mut Work,
     ) -> Option<FirstContact> {
         let start = ball.path.start();
+        let corners = [self.bounds().min(), self.bounds().max()];
+        let size = corners.map(|corner| (corner - start).amax()).into_iter().fold(ball.radius, f64::max);
         let sagitta_limit = SAGITTA_SHARE * ball.radius.max(self.face_size());
         let mut best: Option<FirstContact> = None;
         // Front to back: the stretch to look at next is the last of the stack.
@@ -103,7 +105,9 @@ impl Mesh {
             let (from, end) = stack[depth];
             let chord = ball.path.chord(from, end);
             let (a, b) = (start + chord.from, start + chord.to);
-            let margin = position_bound(a.coords.amax().max(b.coords.amax()).max(ball.path.reach(end)));
+            // What a contact in doubt may be off by counts as near, so that the boxes leave out no face that would report one.
+            let reach = ball.path.reach(end);
+            let margin = position_bound(a.coords.amax().max(b.coords.amax()).max(reach)) + contact_doubt(size + reach);
             let radius = ball.radius + chord.sagitta + margin;
             if !Aabb::of_points(&[a, b]).inflate(radius).intersects(self.bounds()) {
                 continue;
@@ -121,11 +125,11 @@ impl Mesh {
                 let free = free_until(face);
                 if free <= limit {
                     work.triangles += 1;
-                    let contact = first_contact(ball, &self.triangle(face), free, limit, &mut work.rounds);
+                    let contact = contact_from(ball, &self.triangle(face), free, limit, &mut work.rounds);
                     if let Contact::At { f, .. } = contact
-                        && best.is_none_or(|found| (f, face) < (found.f, found.face))
+                        && best.is_none_or(|found| (f.min(to), face) < (found.f, found.face))
                     {
-                        best = Some(FirstContact { f, face });
+                        best = Some(FirstContact { f: f.min(to), face });
                     }
                 }
                 best.map_or(f64::INFINITY, |found| (found.f - from) / (end - from))
@@ -137,11 +141,20 @@ impl Mesh {
         best
     }
 
-    /// What a ball of `radius` at `centre` touches, to within `tolerance`, in the order of the sites.
+    /// What a ball of `radius` at `centre`, moving along `heading`, touches, to within `tolerance`, in the order of the sites.
     ///
+    /// Where rounding decides between a face and its border, it is what the ball moves to.
     /// An edge counts only where none of its faces is touched itself, and a vertex only where none of its edges and faces is: so
     /// the inner edges of a flat or hollow surface do not show.
-    pub fn touches(&self, centre: &Point3<f64>, radius: f64, tolerance: f64, work: &mut Work) -> Vec<Touch> {
+    pub fn touches(
+        &self,
+        centre: &Point3<f64>,
+        heading: &Vector3<f64>,
+        radius: f64,
+        tolerance: f64,
+        work: &mut Work,
+    ) -> Vec<Touch> {
+        let ahead = Point3::from(heading.try_normalize(0.0).unwrap_or_else(Vector3::zeros) * tolerance);
         let reach = radius + tolerance;
         let mut found: Vec<(Site, Vector3<f64>)> = Vec::new();
         let around = Aabb::of_points(&[*centre]).inflate(reach + position_bound(centre.coords.amax() + reach));
@@ -150,7 +163,14 @@ impl Mesh {
             let local = self.triangle(face).map(|v| Point3::from(v - centre));
             let closest = closest_point(&local, &Point3::origin());
             if closest.offset.norm() <= reach {
-                found.push((self.site(face, closest.feature), closest.offset));
+                let site = match closest.feature {
+                    // Rounding found the edge: in a fold that rises towards the ball, it is the face that is touched.
+                    Feature::Edge(edge) if self.rises(face, edge, &closest.offset) => Site::Face(face),
+                    Feature::Face => Site::Face(face),
+                    // Face before edge before vertex.
+                    feature => self.site(face, feature.min(closest_point(&local, &ahead).feature)),
+                };
+                found.push((site, closest.offset));
             }
         });
         // Of the offsets to an edge or a vertex from its faces, which differ by rounding, the same one in whatever order they come.
@@ -165,6 +185,13 @@ impl Mesh {
             .filter(|(site, _)| !hidden(site))
             .filter_map(|&(site, away)| self.normal_at(site, &away).map(|normal| Touch { site, normal }))
             .collect()
+    }
+
+    /// Whether the fold at `edge` of `face` is hollow on the side that `away` points to.
+    fn rises(&self, face: u32, edge: u8, away: &Vector3<f64>) -> bool {
+        let fold = self.fold(face, edge.into());
+        let front = self.normal(face).is_some_and(|n| n.dot(away) >= 0.0);
+        (if front { fold } else { fold.from_back() }) == Fold::Concave
     }
 
     /// The one name of a feature of `face`.
