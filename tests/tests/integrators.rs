@@ -85,7 +85,8 @@ fn errors(method: Method) -> [f64; 4] {
 
 #[test]
 fn r26_the_order_of_each_method_with_an_impact_on_the_way() {
-    let methods: [(&str, f64, f64, fn(f64) -> Method); 3] = [
+    type Stepping = fn(f64) -> Method;
+    let methods: [(&str, f64, f64, Stepping); 3] = [
         ("euler", 1.0, 1.0 / 32.0, |step| Method::Euler { step }),
         ("semi-implicit-euler", 1.0, 1.0 / 32.0, |step| Method::SemiImplicitEuler { step }),
         ("rk4", 4.0, 1.0 / 4.0, |step| Method::Rk4 { step }),
