@@ -147,6 +147,14 @@ pub fn contact_bound(extent: f64) -> f64 {
     16.0 * UNIT_ROUNDOFF * extent
 }
 
+/// How far from touching a ball may be where a contact is reported: 5 [`contact_bound`].
+///
+/// The plane is moved towards the ball by two bounds, and what is as near as that again to the moved plane's place counts as touching; the fifth
+/// is for the rounding of f.
+pub fn contact_doubt(extent: f64) -> f64 {
+    5.0 * contact_bound(extent)
+}
+
 /// The radius in m that stands for a point against a mesh whose largest |coordinate| is `farthest`: 2^14 units of
 /// roundoff, so that the centre stays on its own side whatever the rounding of its position (64 units), and so that what the ball
 /// touches to within that rounding has normals within sqrt(2 64 / 2^14), a twelfth of a radian.
