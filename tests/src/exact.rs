@@ -83,3 +83,17 @@ pub fn clearance(triangle: &[Point3<f64>; 3], x: &ExactVector, radius: f64) -> f
     let distance = nearest(&square).sqrt();
     if radius == 0.0 { distance } else { nearest(&(square - &r * &r)) / (distance + radius) }
 }
+
+/// Whether the closed segment meets the closed triangle, by the signs of five volumes; panics if all five points lie in one plane.
+pub fn segment_meets(triangle: &[Point3<f64>; 3], from: &Point3<f64>, to: &Point3<f64>) -> bool {
+    let t = triangle.each_ref().map(point);
+    let (p, q) = (point(from), point(to));
+    let volume = |a: &ExactVector, b: &ExactVector, c: &ExactVector, d: &ExactVector| {
+        dot(&cross(&minus(b, a), &minus(c, a)), &minus(d, a))
+    };
+    let (above, below) = (volume(&t[0], &t[1], &t[2], &p), volume(&t[0], &t[1], &t[2], &q));
+    assert!(!(above.is_zero() && below.is_zero()), "in one plane");
+    let sides = [volume(&p, &q, &t[0], &t[1]), volume(&p, &q, &t[1], &t[2]), volume(&p, &q, &t[2], &t[0])];
+    let zero = Exact::ZERO;
+    above * below <= zero && (sides.iter().all(|s| *s >= zero) || sides.iter().all(|s| *s <= zero))
+}

@@ -43,7 +43,13 @@ fn respond_to_one(
     let c_r = materials[hit].restitution.coefficient();
     let v_t = v - n * n.dot(&v);
     let rebound = materials[hit].restitution.rebound(closing);
-    let after = slowed(&materials[hit].friction, v_t, closing, c_r, counters) + n * rebound;
+    let friction = &materials[hit].friction;
+    let mut after = slowed(friction, v_t, closing, c_r, counters) + n * rebound;
+    // Rounding, of the normal's length too, must not gain energy; nor lose it where nothing does.
+    let (had, has) = (v.norm_squared(), after.norm_squared());
+    if has > had || (c_r == 1.0 && *friction == Friction::None) {
+        after *= (had / has).sqrt();
+    }
     let rates = |i: usize, c: &Contact| if i == hit { rebound } else { changed_rate(c, &v, &after) };
     if contacts.iter().enumerate().any(|(i, c)| rates(i, c) < 0.0) {
         return None;

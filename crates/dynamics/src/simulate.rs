@@ -22,7 +22,7 @@ use crate::integrators::adaptive::Adaptive;
 use crate::integrators::{Integrator, Step};
 use crate::observer::{Observer, Segment};
 use crate::plan::Plan;
-use crate::tolerance::{EVENT_BUDGET, MAX_STANDSTILL, SLIDING_TOLERANCE};
+use crate::tolerance::{EVENT_BUDGET, MAX_STANDSTILL, SLIDING_TOLERANCE, time_resolution};
 use nalgebra::Vector3;
 
 /// Simulates one ball of `plan` to the end and shows it to `observer`.
@@ -43,6 +43,7 @@ pub fn simulate(plan: &Plan, ball: &Ball, observer: &mut impl Observer) -> Outco
         settling: None,
         slider: Adaptive::new(SLIDING_TOLERANCE),
         standstill: 0,
+        moved: 0.0,
         halvings: 0,
         events: 0,
         ending: None,
@@ -89,8 +90,10 @@ struct Walk<'a, O> {
     settling: Option<Settling>,
     /// Integrates what slides on no straight line.
     slider: Adaptive,
-    /// Answers in a row that took no time.
+    /// Answers in a row that took no time to speak of.
     standstill: u32,
+    /// Since when, in s.
+    moved: f64,
     /// How often the timestep is halved because the path closes where the ball does not.
     halvings: u32,
     events: u64,
@@ -123,8 +126,9 @@ impl<O: Observer> Walk<'_, O> {
             self.observer.segment(&Segment { time, end, step: *step, to, motion });
         }
         self.state = step.at(to);
-        if end > time {
+        if end - self.moved > time_resolution(end) {
             self.standstill = 0;
+            self.moved = end;
             return;
         }
         self.standstill += 1;

@@ -7,7 +7,7 @@ use crate::events::{EventKind, Motion};
 use crate::integrators::Step;
 use crate::observer::Observer;
 use crate::response::respond;
-use crate::tolerance::touch_distance;
+use crate::tolerance::{rate_rounding, touch_distance};
 use carom_geometry::clearance::Entry;
 
 impl<O: Observer> Walk<'_, O> {
@@ -19,7 +19,9 @@ impl<O: Observer> Walk<'_, O> {
         for _ in 0..self.halvings {
             timestep *= 0.5;
         }
-        let step = self.integrator.step(&self.forces, &self.state, timestep, &mut self.counters);
+        let rounding = rate_rounding(self.state.velocity.norm());
+        let tangential = self.contacts.iter().any(|c| c.rate <= rounding);
+        let step = self.integrator.step(&self.forces, &self.state, timestep, tangential, &mut self.counters);
         let returns = self.obstacles.returns(&step, &self.contacts, &mut self.counters);
         let hit = self.obstacles.earliest(&step, &self.contacts, &returns, &mut self.counters);
         match hit {
@@ -71,7 +73,7 @@ impl<O: Observer> Walk<'_, O> {
         self.contacts = contacts;
         let answered = closing.contains(&true);
         let carried = self.settle();
-        if !answered && !carried && hit.f == 0.0 {
+        if !answered && !carried && (hit.f == 0.0 || !step.exact) {
             // The path closes where the ball does not: the hop is too short for this step.
             self.halvings += 1;
             self.counters.halvings += 1;
@@ -80,7 +82,9 @@ impl<O: Observer> Walk<'_, O> {
 
     /// What counts as touching here.
     pub(super) fn touch_tolerance(&self, travelled: f64) -> f64 {
-        touch_distance(self.state.position.coords.amax().max(self.forces.ball.radius()), travelled)
+        let here = self.state.position.coords.amax().max(self.forces.ball.radius());
+        // Contact with a face is found to the rounding of its corners as well.
+        touch_distance(here + self.plan.farthest, travelled)
     }
 
     /// Puts the centre back onto the surface it touches, within the rounding bound of its position (R15: explicit, bounded, counted).
