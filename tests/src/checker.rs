@@ -143,8 +143,7 @@ impl<'a> Checker<'a> {
     fn check(&mut self, start: State, run: &Trajectory, outcome: &Outcome) {
         let exact = matches!(self.scene.method, None | Some(Method::Exact)) && self.scene.drag.is_none();
         let still_air = self.scene.drag.is_none_or(|d| d.wind() == Vector3::zeros());
-        let first_order =
-            matches!(self.scene.method, Some(Method::Euler { .. } | Method::SemiImplicitEuler { .. }));
+        let first_order = matches!(self.scene.method, Some(Method::Euler { .. } | Method::SemiImplicitEuler { .. }));
         let share = match self.scene.method {
             _ if exact => 512.0 * U,
             Some(Method::Rk4 { step }) => 1e-6 * step.max(1e-3),
@@ -179,7 +178,9 @@ impl<'a> Checker<'a> {
             let e1 = self.energy(&end);
             let slack = self.energy_slack(&begin, share) + self.energy_slack(&end, share);
             if still_air && !first_order {
-                self.note(Flaw::EnergyUp, e1 - highest, slack, || format!("in segment {k} {:?}: {end:?}", segment.motion));
+                self.note(Flaw::EnergyUp, e1 - highest, slack, || {
+                    format!("in segment {k} {:?}: {end:?}", segment.motion)
+                });
                 highest = highest.min(e1);
             }
             // A settling ball flies along its surface.
@@ -193,11 +194,13 @@ impl<'a> Checker<'a> {
             if closed && (k % every == 0 || k + 1 == run.segments.len()) {
                 let now = self.world.winding(&end.position);
                 if (now - now.round()).abs() < 1e-3 {
-                    self.note(Flaw::WrongSide, (now.round() - around.round()).abs(), 0.5, || format!("{:?}", end.position));
+                    self.note(Flaw::WrongSide, (now.round() - around.round()).abs(), 0.5, || {
+                        format!("{:?}", end.position)
+                    });
                 }
             }
             state = end;
-            time = segment.end();
+            time = segment.end;
         }
         self.now = outcome.time;
         let group: Vec<Event> = events.copied().collect();
@@ -211,12 +214,14 @@ impl<'a> Checker<'a> {
         let begin = segment.step.at(0.0);
         let end = segment.step.at(segment.to);
         let finite = |s: &State| s.position.iter().chain(s.velocity.iter()).all(|x| x.is_finite());
-        if !(finite(&begin) && finite(&end) && segment.time.is_finite() && segment.end().is_finite()) {
+        if !(finite(&begin) && finite(&end) && segment.time.is_finite() && segment.end.is_finite()) {
             self.note(Flaw::NotFinite, 1.0, 0.5, || format!("{segment:?}"));
         }
         let gap = (begin.position - state.position).norm();
         let slack = self.slack(&begin.position, 0.0);
-        self.note(Flaw::Gap, gap, slack, || format!("{:?} -> {:?} {:?}", state.position, begin.position, segment.motion));
+        self.note(Flaw::Gap, gap, slack, || {
+            format!("{:?} -> {:?} {:?}", state.position, begin.position, segment.motion)
+        });
         let late = (segment.time - time).abs();
         self.note(Flaw::TimeGap, late, 8.0 * U * time + f64::MIN_POSITIVE, || format!("{time} -> {}", segment.time));
     }
@@ -234,7 +239,9 @@ impl<'a> Checker<'a> {
             }
             x
         };
-        let length: f64 = (0..16).map(|i| (at(segment.to * f64::from(i + 1) / 16.0) - at(segment.to * f64::from(i) / 16.0)).norm()).sum();
+        let length: f64 = (0..16)
+            .map(|i| (at(segment.to * f64::from(i + 1) / 16.0) - at(segment.to * f64::from(i) / 16.0)).norm())
+            .sum();
         let pieces = match segment.motion {
             Motion::Resting => 1,
             _ => 32.0f64.max((length / self.mesh_radius.max(0.02 * self.world.farthest)).min(512.0)) as usize,
@@ -250,7 +257,12 @@ impl<'a> Checker<'a> {
                 let side = self.sides[p];
                 let radius = self.radius;
                 let (s, short) = least(from.0, f, |f| side * n.dot(&(at(f) - point)) - radius);
-                self.note(Flaw::Penetration, -short, slack, || format!("plane {p}, segment {k} {:?} at f = {s:e} of {:e}, motion {length:e}", segment.motion, segment.to));
+                self.note(Flaw::Penetration, -short, slack, || {
+                    format!(
+                        "plane {p}, segment {k} {:?} at f = {s:e} of {:e}, motion {length:e}",
+                        segment.motion, segment.to
+                    )
+                });
             }
             let chord = (x - from.1).norm();
             let margin = Vector3::repeat(self.mesh_reach + chord);
@@ -264,13 +276,18 @@ impl<'a> Checker<'a> {
                 }
                 let (s, d) = least(from.0, f, distance);
                 self.note(Flaw::Penetration, r - d, slack, || {
-                    format!("face {face}, segment {k} {:?} at f = {s:e} of {:e}: d = {d:e}, r = {r:e}, motion {length:e}", segment.motion, segment.to)
+                    format!(
+                        "face {face}, segment {k} {:?} at f = {s:e} of {:e}: d = {d:e}, r = {r:e}, motion {length:e}",
+                        segment.motion, segment.to
+                    )
                 });
             }
             let r0 = self.radius;
             touched |= self.world.planes.iter().any(|(p, n, _)| n.dot(&(x - p)).abs() <= r0 + 4.0 * slack);
             if !touched {
-                self.note(Flaw::Hovering, 1.0, 0.5, || format!("segment {k} {:?} at f = {f} of {}: {x:?}", segment.motion, segment.to));
+                self.note(Flaw::Hovering, 1.0, 0.5, || {
+                    format!("segment {k} {:?} at f = {f} of {}: {x:?}", segment.motion, segment.to)
+                });
             }
             from = (f, x);
         }
@@ -308,7 +325,9 @@ impl<'a> Checker<'a> {
                 if touched.is_empty() {
                     let r = self.mesh_radius;
                     let d = self.world.distance(&e.position, 1e3 * r);
-                    self.note(Flaw::FalseContact, 1.0, 0.5, || format!("{:?} at {:?}: {d:e} from the nearest, r = {:e}", e.kind, e.position, r));
+                    self.note(Flaw::FalseContact, 1.0, 0.5, || {
+                        format!("{:?} at {:?}: {d:e} from the nearest, r = {:e}", e.kind, e.position, r)
+                    });
                 } else {
                     let away = touched.iter().map(|(n, _)| (n - e.normal).norm()).fold(2.0, f64::min);
                     let angle = (64.0 * slack / self.mesh_radius).sqrt() + 1e-12;
@@ -316,7 +335,9 @@ impl<'a> Checker<'a> {
                 }
             }
             if e.kind == EventKind::Impact {
-                let same = |o: &Event| o.kind == EventKind::Impact && o.velocity_in == e.velocity_in && o.velocity == e.velocity;
+                let same = |o: &Event| {
+                    o.kind == EventKind::Impact && o.velocity_in == e.velocity_in && o.velocity == e.velocity
+                };
                 let together = group.iter().filter(|o| same(o)).count();
                 let first = group.iter().position(same) == Some(i);
                 if first {
@@ -329,7 +350,8 @@ impl<'a> Checker<'a> {
                     self.note(Flaw::EnergyUp, gain, 64.0 * U * speed * speed, || format!("at impact {e:?}"));
                 }
                 state.velocity = e.velocity;
-                let angle = (64.0 * (slack + self.mesh_reach - self.mesh_radius) / self.mesh_radius).sqrt().min(0.2) + 1e-9;
+                let angle =
+                    (64.0 * (slack + self.mesh_reach - self.mesh_radius) / self.mesh_radius).sqrt().min(0.2) + 1e-9;
                 let alone = together == 1 && touched.iter().all(|(n, _)| (n - e.normal).norm() <= angle);
                 if alone && exact {
                     let m = &self.scene.surfaces[e.surface].material;

@@ -88,7 +88,8 @@ pub fn to_triangle(triangle: &[Point3<f64>; 3], x: &Point3<f64>) -> Vector3<f64>
         if side(&a, &b) >= 0.0 && side(&b, &c) >= 0.0 && side(&c, &a) >= 0.0 {
             let unit = n.normalize();
             // From the nearest corner: the height is then known best.
-            let corner = [a, b, c].into_iter().min_by(|p, q| p.norm_squared().total_cmp(&q.norm_squared())).unwrap_or(a);
+            let corner =
+                [a, b, c].into_iter().min_by(|p, q| p.norm_squared().total_cmp(&q.norm_squared())).unwrap_or(a);
             let foot = unit * unit.dot(&corner);
             if foot.norm_squared() < best.norm_squared() {
                 best = foot;

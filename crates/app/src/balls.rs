@@ -48,10 +48,12 @@ pub fn read(path: &Path) -> Result<BallList, AppError> {
 
 fn parse(bytes: &[u8], path: String) -> Result<BallList, AppError> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    let fault = |line: u64, message: String, help: Option<String>| AppError::Balls { path: path.clone(), line, message, help };
+    let fault =
+        |line: u64, message: String, help: Option<String>| AppError::Balls { path: path.clone(), line, message, help };
     let broken = |e: csv::Error| fault(e.position().map_or(1, csv::Position::line), csv_message(&e), None);
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(bytes);
-    let columns = columns(reader.headers().map_err(broken)?).map_err(|(message, help)| fault(1, message, Some(help)))?;
+    let columns =
+        columns(reader.headers().map_err(broken)?).map_err(|(message, help)| fault(1, message, Some(help)))?;
     let (mut balls, mut lines) = (Vec::new(), Vec::new());
     for record in reader.records() {
         let record = record.map_err(broken)?;
@@ -62,7 +64,9 @@ fn parse(bytes: &[u8], path: String) -> Result<BallList, AppError> {
                 _ if word.is_empty() && column >= NEEDED => None,
                 Ok(x) if x.is_finite() => Some(x),
                 Ok(_) => return Err(fault(line, format!("{} is `{word}`, but must be finite", COLUMNS[column]), None)),
-                Err(_) => return Err(fault(line, format!("{} is `{word}`, which is not a number", COLUMNS[column]), None)),
+                Err(_) => {
+                    return Err(fault(line, format!("{} is `{word}`, which is not a number", COLUMNS[column]), None));
+                }
             };
         }
         let [x, y, z, vx, vy, vz, radius, mass] = values;

@@ -37,7 +37,7 @@ pub enum Command {
     ///
     /// A scene (.toml, .json) is read as `run` would read it, and the meshes it names are examined. A mesh (.obj, .stl, .ply)
     /// is examined for degenerate and duplicate faces, non-manifold and open edges, inconsistent winding and the like,
-    /// each with its face numbers. Exit code 3 if there is an error; warnings alone are 0.
+    /// each with its face numbers, which count from 0. Exit code 3 if there is an error; warnings alone are 0.
     Check(CheckArgs),
     /// Print the JSON schema of scene files, for editors
     Schema,

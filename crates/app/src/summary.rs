@@ -28,7 +28,8 @@ pub struct Summary {
     sliding: usize,
     /// How many were flying.
     flying: usize,
-    /// How many of the flying ones were outside the box of all surfaces; null with an infinite plane or without surfaces.
+    /// How many of the flying ones had not even the box of all surfaces before them, in the direction of gravity or, without it,
+    /// of their velocity; null with an infinite plane or without surfaces.
     off_the_map: Option<usize>,
     /// The balls that a guard ended before the duration was over.
     ended_early: Vec<EndedEarly>,
@@ -105,9 +106,9 @@ impl<'a> Tally<'a> {
         }
         if let Some(bounds) = &self.bounds
             && outcome.motion == Motion::Flying
-            && !bounds.contains(&outcome.state.position)
         {
-            self.off_the_map += 1;
+            let heading = self.scene.gravity.map_or(outcome.state.velocity, |g| g.acceleration());
+            self.off_the_map += usize::from(!bounds.is_ahead(&outcome.state.position, &heading));
         }
         if let Some(start) = self.scene.balls.get(ball) {
             let mass = start.mass().filter(|_| self.masses_known).unwrap_or(1.0);
@@ -172,8 +173,10 @@ impl Summary {
     /// For the eye: a few lines.
     pub fn text(&self) -> String {
         let mut text = String::new();
-        // A string takes everything that is written to it.
-        let mut line = |name: &str, what: String| drop(writeln!(text, "{name:<9} {what}"));
+        let mut line = |name: &str, what: String| {
+            // A string takes everything that is written to it.
+            let _ = writeln!(text, "{name:<9} {what}");
+        };
         line("balls", count(self.balls as u64));
         line("impacts", count(self.impacts));
         let off = match self.off_the_map {

@@ -18,15 +18,13 @@ impl Clock {
         self.sum + self.lost
     }
 
-    /// Lets `seconds` pass (Neumaier's summation: many events cost no digits). Says whether the time changed.
-    pub fn advance(&mut self, seconds: f64) -> bool {
-        let before = self.now();
+    /// Lets `seconds` pass (Neumaier's summation: many events cost no digits).
+    pub fn advance(&mut self, seconds: f64) {
         let sum = self.sum + seconds;
         let larger_first =
             if self.sum.abs() >= seconds.abs() { (self.sum - sum) + seconds } else { (seconds - sum) + self.sum };
         self.lost += larger_first;
         self.sum = sum;
-        self.now() != before
     }
 
     /// Sets the time, exactly.

@@ -5,11 +5,12 @@ use crate::contacts::{Contact, Contacts, MAX_CONTACTS};
 use crate::counters::Counters;
 use crate::integrators::Step;
 use crate::plan::Plan;
-use crate::tolerance::merge_angle_squared;
+use crate::tolerance::{merge_angle_squared, rate_rounding, touch_distance};
 use arrayvec::ArrayVec;
 use carom_geometry::clearance::{Clearance, Entry};
 use carom_geometry::contact::{Hold, MovingBall};
 use carom_geometry::plane::Side;
+use carom_geometry::rounding::contact_doubt;
 use carom_geometry::sweep::{Bend, RegionBound, Work};
 use nalgebra::{Point3, Vector3};
 
@@ -22,6 +23,8 @@ pub struct Hit {
     pub surface: usize,
     /// The face of a mesh.
     pub face: Option<u32>,
+    /// The slope dc/df of the clearance there, where a plane's was solved.
+    pub rate: Option<f64>,
 }
 
 /// When a contact that the ball has is entered again: clearance 0 at the start, changing with its exact rate.
@@ -58,15 +61,11 @@ fn leaving(step: &Step, contact: &Contact) -> Clearance {
 /// For a parabola |w(f)|^2 - r^2, with w the part across the edge, is a quartic, solved like any clearance. A path of higher degree follows
 /// its parabola closely enough while its further terms take less than a quarter of what the distance gains.
 fn leaves_until(step: &Step, bend: Bend, radius: f64) -> f64 {
-    let (point, across): (Point3<f64>, Box<dyn Fn(Vector3<f64>) -> Vector3<f64>>) = match bend {
-        Bend::Flat => return 0.0,
-        Bend::Around { point, along } => (point, Box::new(move |w| w - along * along.dot(&w))),
-        Bend::About { point } => (point, Box::new(|w| w)),
-    };
     let zero = Vector3::zeros();
     let term = |k: usize| step.path.terms().get(k).copied().unwrap_or(zero);
-    let w = across(step.path.start() - point).normalize() * radius;
-    let (b, c) = (across(term(0)), across(term(1)));
+    let away = bend.away_from(&step.path.start()).and_then(|away| away.try_normalize(0.0));
+    let Some(w) = away.map(|n| n * radius) else { return 0.0 };
+    let (b, c) = (bend.across(&term(0)), bend.across(&term(1)));
     // The ball touches and leaves tangentially: the terms of order 0 and 1 are zero.
     let gain = b.norm_squared() + 2.0 * w.dot(&c);
     let squared = Clearance::new([0.0, 0.0, gain, 2.0 * b.dot(&c), c.norm_squared()]);
@@ -93,10 +92,12 @@ impl<'a> Obstacles<'a> {
     pub fn new(plan: &'a Plan, radius: f64, state: &State, a: &Vector3<f64>) -> Self {
         let side = |plane: &carom_geometry::plane::Plane| {
             let n = plane.normal();
-            // A centre on the plane is on the side it moves to, or else on the side it is pressed from.
+            // A centre on the plane is on the side it moves to, or else, where it moves along the plane to rounding, on the side it
+            // is pressed from.
             plane.side_of(&state.position).unwrap_or_else(|| {
                 let heading = n.dot(&state.velocity);
-                let heading = if heading == 0.0 { -n.dot(a) } else { heading };
+                let along = heading.abs() <= rate_rounding(state.velocity.norm());
+                let heading = if along { -n.dot(a) } else { heading };
                 if heading < 0.0 { Side::Negative } else { Side::Positive }
             })
         };
@@ -111,30 +112,41 @@ impl<'a> Obstacles<'a> {
 
     /// When the path of `step` returns to each of `contacts`; never to a lasting one, along which it moves.
     pub fn returns(&self, step: &Step, contacts: &[Contact], counters: &mut Counters) -> Returns {
+        let slack = touch_distance(step.path.start().coords.amax().max(self.radius), 0.0);
         contacts
             .iter()
             .map(|contact| {
-                let normal = contact.normal;
+                let hold = |until| Hold { normal: contact.normal, point: self.anchor(contact), slack, until };
                 if contact.lasting {
-                    let hold = Hold { normal, until: f64::INFINITY };
-                    return Return { hold, entry: Entry::Never, free: self.free(contact, f64::INFINITY) };
+                    let until = f64::INFINITY;
+                    return Return { hold: hold(until), entry: Entry::Never, free: self.free(contact, until) };
                 }
                 counters.clearances += 1;
                 let entry = leaving(step, contact).first_entry(0.0, step.to);
                 let until = entry.f().unwrap_or(f64::INFINITY);
-                let free = match self.bend(contact) {
-                    bend if bend != Bend::Flat && contact.rate == 0.0 => {
-                        let exit = self.exit(step, contact, counters).map_or(f64::INFINITY, |(f, _)| f);
-                        self.free(contact, leaves_until(step, bend, self.radius_at(contact)).min(exit))
-                    }
-                    _ => None,
-                };
-                Return { hold: Hold { normal, until }, entry, free }
+                let curved = self.bend(contact) != Bend::Flat && contact.rate == 0.0;
+                let free = if curved { self.leaves_until(step, contact, counters) } else { until };
+                Return { hold: hold(until), entry, free: self.free(contact, free) }
             })
             .collect()
     }
 
-    /// The faces at an edge or vertex, with the f until which the bounds of its region watch over them.
+    /// Until when a ball that leaves an edge or vertex tangentially touches none of the faces there: until it comes back to it, or
+    /// enters the region of one of them.
+    fn leaves_until(&self, step: &Step, contact: &Contact, counters: &mut Counters) -> f64 {
+        let exit = self.exit(step, contact, counters).map_or(f64::INFINITY, |(f, _)| f);
+        leaves_until(step, self.bend(contact), self.radius_at(contact)).min(exit)
+    }
+
+    /// A point of what is touched.
+    fn anchor(&self, contact: &Contact) -> Point3<f64> {
+        match (contact.site, self.mesh(contact.surface)) {
+            (Some(site), Some(mesh)) => mesh.anchor(site),
+            _ => self.plan.planes.iter().find(|(s, _)| *s == contact.surface).map_or(Point3::origin(), |p| p.1.point()),
+        }
+    }
+
+    /// The faces at what is touched, with the f until which the ball is free of them.
     fn free(&self, contact: &Contact, until: f64) -> Option<(usize, Vec<u32>, f64)> {
         Some((contact.surface, self.mesh(contact.surface)?.faces_at(contact.site?), until))
     }
@@ -171,6 +183,11 @@ impl<'a> Obstacles<'a> {
         returns: &Returns,
         counters: &mut Counters,
     ) -> Option<Hit> {
+        // Ties go by name, so that the order of the surfaces does not matter.
+        let rank = |surface: usize| self.plan.surfaces[surface].rank;
+        let earlier = |f: f64, surface: usize, than: &Option<Hit>| {
+            than.is_none_or(|hit| f < hit.f || (f == hit.f && rank(surface) < rank(hit.surface)))
+        };
         let mut earliest: Option<Hit> = None;
         for ((surface, plane), side) in self.plan.planes.iter().zip(&self.sides) {
             let known = contacts.iter().position(|c| c.surface == *surface);
@@ -183,10 +200,10 @@ impl<'a> Obstacles<'a> {
                     step.path.clearance(gap, &normal).first_entry(0.0, step.to)
                 }
             };
-            if let Entry::At { f, .. } = entry
-                && earliest.is_none_or(|hit| f < hit.f)
+            if let Entry::At { f, rate } = entry
+                && earlier(f, *surface, &earliest)
             {
-                earliest = Some(Hit { f, surface: *surface, face: None });
+                earliest = Some(Hit { f, surface: *surface, face: None, rate: Some(rate) });
             }
         }
         let holds: ArrayVec<Hold, MAX_CONTACTS> = returns.iter().map(|r| r.hold).collect();
@@ -201,12 +218,20 @@ impl<'a> Obstacles<'a> {
             let found = mesh.first_contact(&ball, to, free_until, &mut work);
             counters.add(&work);
             if let Some(found) = found
-                && earliest.is_none_or(|hit| found.f < hit.f)
+                && earlier(found.f, *surface, &earliest)
             {
-                earliest = Some(Hit { f: found.f, surface: *surface, face: Some(found.face) });
+                earliest = Some(Hit { f: found.f, surface: *surface, face: Some(found.face), rate: None });
             }
         }
         earliest
+    }
+
+    /// How far from touching the ball may be at `hit`, by the rounding of the search that found it: it grows with the face.
+    pub fn doubt(&self, step: &Step, hit: &Hit) -> f64 {
+        let Some((face, mesh)) = hit.face.zip(self.mesh(hit.surface)) else { return 0.0 };
+        let corners = mesh.triangle(face).map(|v| (v - step.path.start()).amax());
+        let size = corners.into_iter().fold(self.mesh_radius, f64::max);
+        contact_doubt(size + step.path.reach(hit.f))
     }
 
     /// The contacts of a ball at `position` with `velocity`, to within `tolerance` (m), each with its rate n.v.

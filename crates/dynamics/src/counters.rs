@@ -65,7 +65,35 @@ impl Counters {
     /// Every count with its name.
     pub fn named(&self) -> [(&'static str, u64); 13] {
         // Taken apart, so that a new count cannot be forgotten here.
-        let Self { paths, clearances, nodes, triangles, rounds, accelerations, drag, restitution, friction, rest, impacts, corrections, halvings } = *self;
-        [("paths", paths), ("clearances", clearances), ("nodes", nodes), ("triangles", triangles), ("rounds", rounds), ("accelerations", accelerations), ("drag", drag), ("restitution", restitution), ("friction", friction), ("rest", rest), ("impacts", impacts), ("corrections", corrections), ("halvings", halvings)]
+        let Self {
+            paths,
+            clearances,
+            nodes,
+            triangles,
+            rounds,
+            accelerations,
+            drag,
+            restitution,
+            friction,
+            rest,
+            impacts,
+            corrections,
+            halvings,
+        } = *self;
+        [
+            ("paths", paths),
+            ("clearances", clearances),
+            ("nodes", nodes),
+            ("triangles", triangles),
+            ("rounds", rounds),
+            ("accelerations", accelerations),
+            ("drag", drag),
+            ("restitution", restitution),
+            ("friction", friction),
+            ("rest", rest),
+            ("impacts", impacts),
+            ("corrections", corrections),
+            ("halvings", halvings),
+        ]
     }
 }

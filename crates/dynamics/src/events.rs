@@ -18,6 +18,10 @@ pub enum EventKind {
     Leave,
     /// A resting ball began to move.
     Wake,
+    /// The simulation of the ball was ended: its budget of events is used up.
+    EventBudget,
+    /// The simulation of the ball was ended: its contacts kept answering each other without time passing.
+    UnresolvedContact,
 }
 
 /// One event of one ball at one surface. A simultaneous impact at several surfaces is one event for each, at one time and

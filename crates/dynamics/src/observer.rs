@@ -9,6 +9,8 @@ use crate::integrators::Step;
 pub struct Segment {
     /// When it begins, in s.
     pub time: f64,
+    /// When it ends, in s; the next one begins then, to the bit.
+    pub end: f64,
     /// Its path and velocity.
     pub step: Step,
     /// The f at which it ends.
@@ -18,11 +20,6 @@ pub struct Segment {
 }
 
 impl Segment {
-    /// When it ends, in s.
-    pub fn end(&self) -> f64 {
-        self.time + self.step.time(self.to)
-    }
-
     /// The state at `time`, which is brought into the segment.
     pub fn at(&self, time: f64) -> State {
         self.step.at(((time - self.time) / self.step.seconds).clamp(0.0, self.to))
@@ -96,7 +93,7 @@ impl Trajectory {
     pub fn at(&self, time: f64) -> Option<(State, Motion)> {
         let after = self.segments.partition_point(|s| s.time <= time);
         let segment = self.segments.get(after.checked_sub(1)?)?;
-        (time <= segment.end()).then(|| (segment.at(time), segment.motion))
+        (time <= segment.end).then(|| (segment.at(time), segment.motion))
     }
 }
 
@@ -135,7 +132,7 @@ impl Observer for FrameSampler {
     fn event(&mut self, _: &Event) {}
 
     fn segment(&mut self, segment: &Segment) {
-        let end = segment.end();
+        let end = segment.end;
         loop {
             let time = self.frames.len() as f64 / self.fps;
             // A frame at the time of an event shows what comes after it; the last frame has nothing after it.

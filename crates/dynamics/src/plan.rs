@@ -8,7 +8,7 @@ use crate::integrators::adaptive::Adaptive;
 use crate::integrators::{Integrator, Stepping};
 use crate::scene::{Method, Scene};
 use crate::surface::{Material, Shape};
-use crate::tolerance::{FLIGHT_TOLERANCE, LEAST_TOLERANCE, RestThresholds, default_rest_length};
+use crate::tolerance::{FLIGHT_TOLERANCE, LEAST_TOLERANCE, RestThresholds, TOLERANCE_RANGE, default_rest_length};
 use carom_geometry::bounds::Aabb;
 use carom_geometry::mesh::Mesh;
 use carom_geometry::plane::Plane;
@@ -157,8 +157,7 @@ fn method(scene: &Scene, flows: &[Arc<dyn Flow>]) -> Result<Method, SceneError> 
             positive("step", step, "finite and > 0, in s")?;
         }
         Method::Adaptive { tolerance } => {
-            let expected = "between 1e-15 and 1";
-            require("tolerance", tolerance, expected, (LEAST_TOLERANCE..=1.0).contains(&tolerance))?;
+            require("tolerance", tolerance, TOLERANCE_RANGE, (LEAST_TOLERANCE..=1.0).contains(&tolerance))?;
         }
     }
     Ok(method)
@@ -173,7 +172,7 @@ fn shapes(scene: &Scene) -> (Planes, Meshes) {
     let (mut planes, mut meshes) = (Vec::new(), Vec::new());
     for (i, surface) in scene.surfaces.iter().enumerate() {
         match &surface.shape {
-            Shape::Plane(plane) => planes.push((i, plane.clone())),
+            Shape::Plane(plane) => planes.push((i, *plane)),
             Shape::Polygon(polygon) => meshes.push((i, Arc::new(Mesh::from_polygon(polygon)))),
             Shape::Mesh(mesh) => meshes.push((i, Arc::clone(mesh))),
         }

@@ -51,3 +51,10 @@ pub struct Scene {
     /// The method; exact where the acceleration is constant, else adaptive, if none.
     pub method: Option<Method>,
 }
+
+impl Scene {
+    /// An empty scene of `duration` seconds, to fill in: no gravity, no air, no surfaces, no balls.
+    pub fn lasting(duration: f64) -> Self {
+        Self { duration, gravity: None, drag: None, surfaces: Vec::new(), balls: Vec::new(), rest: None, method: None }
+    }
+}

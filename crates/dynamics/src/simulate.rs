@@ -8,9 +8,12 @@
 //!     some: state = path at f, respond, remaining = remaining - f timestep
 //! ```
 
+mod flight;
+mod lasting;
+
 use crate::body::{Ball, State};
 use crate::clock::Clock;
-use crate::collision::{Hit, Obstacles, Returns};
+use crate::collision::Obstacles;
 use crate::contacts::{Contact, Contacts};
 use crate::counters::Counters;
 use crate::events::{Ending, Event, EventKind, Motion, Outcome};
@@ -19,12 +22,7 @@ use crate::integrators::adaptive::Adaptive;
 use crate::integrators::{Integrator, Step};
 use crate::observer::{Observer, Segment};
 use crate::plan::Plan;
-use crate::response::{changed_rate, respond};
-use crate::sliding::{Balance, Carrier, Slide, slide};
-use crate::tolerance::{EVENT_BUDGET, MAX_STANDSTILL, PATIENCE, SLIDING_TOLERANCE, least_hop, rate_rounding, time_resolution, touch_distance};
-use carom_geometry::clearance::Entry;
-use carom_geometry::rounding::position_bound;
-use carom_geometry::sweep::{Bend, RegionBound};
+use crate::tolerance::{EVENT_BUDGET, MAX_STANDSTILL, SLIDING_TOLERANCE, time_resolution};
 use nalgebra::Vector3;
 
 /// Simulates one ball of `plan` to the end and shows it to `observer`.
@@ -79,16 +77,6 @@ struct Settling {
     contact: usize,
 }
 
-/// The part of `v` along all planes with these normals.
-fn along(normals: &[Vector3<f64>], v: Vector3<f64>) -> Vector3<f64> {
-    match normals {
-        [] => v,
-        [n] => v - n * n.dot(&v),
-        [a, b] => a.cross(b).try_normalize(0.0).map_or(v, |t| t * t.dot(&v)),
-        _ => Vector3::zeros(),
-    }
-}
-
 /// One ball on its way.
 struct Walk<'a, O> {
     plan: &'a Plan,
@@ -126,449 +114,27 @@ impl<O: Observer> Walk<'_, O> {
         (n * h).min(duration)
     }
 
-    /// One pass of the slides' loop.
-    fn fly(&mut self) {
-        let end = self.step_end();
-        let remaining = self.clock.until(end);
-        let mut timestep = remaining;
-        for _ in 0..self.halvings {
-            timestep *= 0.5;
-        }
-        let rounding = rate_rounding(self.state.velocity.norm());
-        let tangential = self.contacts.iter().any(|c| c.rate <= rounding);
-        let step = self.integrator.step(&self.forces, &self.state, timestep, tangential, &mut self.counters);
-        let returns = self.obstacles.returns(&step, &self.contacts, &mut self.counters);
-        let hit = self.obstacles.earliest(&step, &self.contacts, &returns, &mut self.counters);
-        match hit {
-            None => {
-                self.travel(&step, step.to, Motion::Flying);
-                if timestep == remaining && step.time(step.to) >= remaining {
-                    self.clock.set(end);
-                }
-                self.contacts.clear();
-                self.halvings = 0;
-            }
-            Some(hit) => {
-                self.travel(&step, hit.f, Motion::Flying);
-                self.arrive(&step, hit, &returns);
-            }
-        }
-    }
-
-    /// Moves along `step` to `to`.
-    fn travel(&mut self, step: &Step, to: f64, motion: Motion) {
+    /// Moves along `step` to `to`, which is at the time `end` if that is known better than by the sum.
+    fn travel(&mut self, step: &Step, to: f64, motion: Motion, end: Option<f64>) {
         let time = self.clock.now();
+        match end {
+            Some(end) => self.clock.set(end),
+            None => self.clock.advance(step.time(to)),
+        }
+        let end = self.clock.now();
         if to > 0.0 {
-            self.observer.segment(&Segment { time, step: *step, to, motion });
+            self.observer.segment(&Segment { time, end, step: *step, to, motion });
         }
         self.state = step.at(to);
-        self.clock.advance(step.time(to));
-        let now = self.clock.now();
-        if now - self.moved > time_resolution(now) {
+        if end - self.moved > time_resolution(end) {
             self.standstill = 0;
-            self.moved = now;
-        } else {
-            self.standstill += 1;
-            if self.standstill > MAX_STANDSTILL {
-                self.ending = Some(Ending::UnresolvedContact);
-            }
-        }
-    }
-
-    /// At a collision: what is touched, how fast, and the answer.
-    fn arrive(&mut self, step: &Step, hit: Hit, returns: &Returns) {
-        let tolerance = self.touch_tolerance(step.path.reach(hit.f));
-        let before = std::mem::take(&mut self.contacts);
-        let mut contacts =
-            self.obstacles.touching(&self.state.position, &self.state.velocity, tolerance, &mut self.counters);
-        for contact in &mut contacts {
-            self.correct(contact, tolerance);
-            contact.rate = self.rate(step, hit, contact, &before, returns);
-        }
-        let carried = |c: &Contact| before.iter().any(|b| b.lasting && b.surface == c.surface && b.site == c.site);
-        if let Some(contact) = contacts.iter().find(|c| c.rate < 0.0)
-            && step.exact
-        {
-            // The normal speed is known better from the clearance than from the velocity.
-            let n = contact.normal;
-            self.state.velocity += n * (contact.rate - n.dot(&self.state.velocity));
-        }
-        let closing: Vec<bool> = contacts.iter().map(|c| c.rate < 0.0).collect();
-        if closing.contains(&true) {
-            let materials: Vec<_> = contacts.iter().map(|c| self.plan.surfaces[c.surface].material).collect();
-            let velocity_in = self.state.velocity;
-            self.state.velocity = respond(velocity_in, &mut contacts, &materials, &mut self.counters);
-            self.counters.impacts += 1;
-            self.halvings = 0;
-            for (contact, _) in contacts.iter().zip(&closing).filter(|(_, closing)| **closing) {
-                self.tell(EventKind::Impact, contact, velocity_in);
-            }
-        }
-        for contact in &mut contacts {
-            contact.lasting = carried(contact) && contact.rate == 0.0;
-        }
-        self.contacts = contacts;
-        let answered = closing.contains(&true);
-        let carried = self.settle();
-        if !answered && !carried && (hit.f == 0.0 || !step.exact) {
-            // The path closes where the ball does not: the hop is too short for this step.
-            self.halvings += 1;
-            self.counters.halvings += 1;
-        }
-    }
-
-    /// What counts as touching here.
-    fn touch_tolerance(&self, travelled: f64) -> f64 {
-        let here = self.state.position.coords.amax().max(self.forces.ball.radius());
-        // Contact with a face is found to the rounding of its corners as well.
-        touch_distance(here + self.plan.farthest, travelled)
-    }
-
-    /// Puts the centre back onto the surface it touches, within the rounding bound of its position (R15: explicit, bounded, counted).
-    fn correct(&mut self, contact: &Contact, tolerance: f64) {
-        if let Some(gap) = self.obstacles.gap(contact, &self.state.position)
-            && gap != 0.0
-            && gap.abs() <= tolerance
-        {
-            self.state.position -= contact.normal * gap;
-            self.counters.corrections += 1;
-        }
-    }
-
-    /// The rate of change of a contact's clearance on arrival: from the clearance itself where it was solved, else n.v.
-    fn rate(&self, step: &Step, hit: Hit, contact: &Contact, before: &[Contact], returns: &Returns) -> f64 {
-        let known =
-            before.iter().zip(returns).find(|(b, _)| b.surface == contact.surface && b.normal == contact.normal);
-        if let Some((b, known)) = known {
-            match known.entry {
-                _ if b.lasting => return 0.0,
-                Entry::At { f, rate } if step.exact && f == hit.f => return rate / step.seconds,
-                _ if hit.f == 0.0 => return b.rate,
-                _ => {}
-            }
-        }
-        if step.exact
-            && contact.surface == hit.surface
-            && contact.site.is_none()
-            && let Some(gap) = self.obstacles.gap(contact, &step.path.start())
-            && let Entry::At { f, rate } = step.path.clearance(gap, &contact.normal).first_entry(0.0, step.to)
-            && f == hit.f
-        {
-            return rate / step.seconds;
-        }
-        contact.rate
-    }
-
-    /// What the ball makes of its contacts: it flies on, goes on bouncing, or settles. Says whether something carries it.
-    fn settle(&mut self) -> bool {
-        let sliding = self.motion == Motion::Sliding;
-        let a = self.forces.acceleration(&self.state, &mut self.counters);
-        let carriers = self.carriers();
-        let mut carrying = [false; crate::contacts::MAX_CONTACTS];
-        let mut settling = None;
-        // A contact may press the ball into another that its weight alone would not press it into: asked again, until no other carries.
-        let mut free = a;
-        let mut more = true;
-        while std::mem::take(&mut more) {
-            for (i, carrier) in carriers.iter().enumerate() {
-                if carrying[i] {
-                    continue;
-                }
-                let contact = &carrier.contact;
-                let pressed = -contact.normal.dot(&free) - carrier.centripetal(&self.state.velocity);
-                carrying[i] = self.ends_bouncing(contact, pressed);
-                more |= carrying[i];
-                let c_r = self.plan.surfaces[contact.surface].material.restitution.coefficient();
-                if carrying[i] && contact.rate > 0.0 && c_r < 1.0 {
-                    // Around an edge the way along the surface is no flight: there the hops end at once.
-                    let flat = carrier.bend == Bend::Flat;
-                    let seconds = if flat { 2.0 * contact.rate / (pressed * (1.0 - c_r)) } else { 0.0 };
-                    settling = Some(Settling { seconds, closing: contact.rate, contact: i });
-                }
-            }
-            let held: Vec<Carrier> = carriers.iter().zip(&carrying).filter(|(_, c)| **c).map(|(c, _)| *c).collect();
-            free = Balance::of(&a, &held, &self.state).free;
-        }
-        if settling.is_some() && self.drives_into_others(&carrying) {
-            // What hops is not held down where that would press the ball into something else: it flies the hop.
-            settling = None;
-            for (contact, carrying) in self.contacts.iter().zip(&mut carrying) {
-                *carrying &= contact.rate <= 0.0;
-            }
-        }
-        let several = carrying.iter().filter(|c| **c).count() > 1;
-        if !carrying.contains(&true) {
-            self.set_flying(sliding);
-            return false;
-        }
-        for (contact, carrying) in self.contacts.iter_mut().zip(carrying) {
-            contact.lasting = carrying;
-            if carrying {
-                contact.rate = 0.0;
-            }
-        }
-        let before = self.state.velocity;
-        self.make_tangential();
-        for contact in self.contacts.iter_mut().filter(|c| !c.lasting) {
-            contact.rate = changed_rate(contact, &before, &self.state.velocity);
-        }
-        self.motion = Motion::Sliding;
-        self.halvings = 0;
-        match settling {
-            Some(settling) if !several => self.settling = Some(settling),
-            _ if !sliding => self.begin_sliding(),
-            _ => {}
-        }
-        true
-    }
-
-    /// Whether bouncing on `contact` has ended: it is pressed, and the next hop would be none (three of the four parts of
-    /// the rest test, for the normal speed; the fourth tells sliding from resting).
-    fn ends_bouncing(&mut self, contact: &Contact, pressed: f64) -> bool {
-        self.counters.rest += 1;
-        let c_r = self.plan.surfaces[contact.surface].material.restitution.coefficient();
-        let thresholds = self.plan.rest.at(pressed.max(0.0));
-        let still = self.state.velocity == Vector3::zeros();
-        if contact.rate == 0.0 {
-            return pressed > 0.0 || (still && pressed >= -thresholds.force);
-        }
-        let hop = contact.rate * contact.rate / (2.0 * pressed);
-        let resolved = self.integrator.timestep().map_or(0.0, |h| least_hop(pressed, h));
-        let hidden = hop <= position_bound(self.plan.farthest.max(self.state.position.coords.amax()));
-        let ends = c_r < 1.0 || hidden || self.standstill > PATIENCE;
-        pressed > 0.0 && ends && (contact.rate <= thresholds.speed || hop <= resolved)
-    }
-
-    /// The contacts as carriers.
-    fn carriers(&self) -> Vec<Carrier> {
-        self.contacts
-            .iter()
-            .map(|contact| Carrier {
-                contact: *contact,
-                bend: self.obstacles.bend(contact),
-                friction: self.plan.surfaces[contact.surface].material.friction.in_contact(),
-                radius: self.obstacles.radius_at(contact),
-            })
-            .collect()
-    }
-
-    /// Whether taking the ball along the contacts that carry would drive it into one that does not.
-    fn drives_into_others(&self, carrying: &[bool]) -> bool {
-        let contacts = || self.contacts.iter().zip(carrying);
-        let held: Vec<_> = contacts().filter(|(_, carrying)| **carrying).map(|(c, _)| c.normal).collect();
-        let v = along(&held, self.state.velocity);
-        let rounding = rate_rounding(self.state.velocity.norm());
-        contacts().any(|(c, carrying)| !carrying && c.normal.dot(&v) < -rounding)
-    }
-
-    /// Takes from the velocity what would leave or enter a lasting contact.
-    fn make_tangential(&mut self) {
-        let lasting: Vec<Vector3<f64>> = self.contacts.iter().filter(|c| c.lasting).map(|c| c.normal).collect();
-        self.state.velocity = along(&lasting, self.state.velocity);
-    }
-
-    fn set_flying(&mut self, was_sliding: bool) {
-        self.motion = Motion::Flying;
-        self.settling = None;
-        if was_sliding && let Some(contact) = self.contacts.first().copied() {
-            self.tell(EventKind::Leave, &contact, self.state.velocity);
-        }
-        for contact in &mut self.contacts {
-            contact.lasting = false;
-        }
-    }
-
-    /// Tells that sliding begins; whether it begins with rest, the next pass finds out.
-    fn begin_sliding(&mut self) {
-        if !self.try_to_rest()
-            && let Some(contact) = self.contacts.iter().find(|c| c.lasting).copied()
-        {
-            self.tell(EventKind::Slide, &contact, self.state.velocity);
-        }
-    }
-
-    /// The four-part rest test: slow, in contact, pressed, and held by friction. A ball that passes it rests.
-    fn try_to_rest(&mut self) -> bool {
-        self.counters.rest += 1;
-        let carriers: Vec<Carrier> = self.lasting_carriers();
-        let still = State { velocity: Vector3::zeros(), ..self.state };
-        let a = self.forces.acceleration(&still, &mut self.counters);
-        let balance = Balance::of(&a, &carriers, &still);
-        let Some((main, _)) = balance.loads.loads().max_by(|a, b| a.1.total_cmp(&b.1)).or(Some((0, 0.0))) else {
-            return false;
-        };
-        let Some(carrier) = carriers.get(main) else { return false };
-        let pressed = -carrier.contact.normal.dot(&a);
-        let slow = self.state.velocity.norm() <= self.plan.rest.at(pressed.max(0.0)).speed || balance.sticks;
-        if !(slow && balance.holds()) {
-            return false;
-        }
-        let contact = carrier.contact;
-        let velocity_in = std::mem::replace(&mut self.state.velocity, Vector3::zeros());
-        self.motion = Motion::Resting;
-        self.tell(EventKind::Rest, &contact, velocity_in);
-        true
-    }
-
-    fn lasting_carriers(&self) -> Vec<Carrier> {
-        self.carriers().into_iter().filter(|c| c.contact.lasting).collect()
-    }
-
-    /// One stretch of sliding: to a stop, over an edge, into another surface, or off.
-    fn slide(&mut self) {
-        if self.settling.is_none() && self.try_to_rest() {
+            self.moved = end;
             return;
         }
-        let carriers = self.lasting_carriers();
-        let a = self.forces.acceleration(&self.state, &mut self.counters);
-        let balance = Balance::of(&a, &carriers, &self.state);
-        if balance.loads.count() == 0 && self.settling.is_none() {
-            self.set_flying(true);
-            return;
+        self.standstill += 1;
+        if self.standstill > MAX_STANDSTILL {
+            self.give_up(Ending::UnresolvedContact, EventKind::UnresolvedContact);
         }
-        if self.drop_unloaded(&balance) {
-            return;
-        }
-        if self.settling.is_none() && self.turns_round(&balance) {
-            self.state.velocity = Vector3::zeros();
-            self.contacts.iter_mut().for_each(|c| c.rate = 0.0);
-        }
-        let remaining = self.clock.until(self.plan.duration);
-        let Slide { step, stops } = match self.settling {
-            None => {
-                let slider = &mut self.slider;
-                slide(slider, &self.forces, &self.state, &carriers, &balance, remaining, &mut self.counters)
-            }
-            // The hops are too low to see, and friction acts at their ends: a flight along the surface.
-            Some(settling) => {
-                self.counters.paths += 1;
-                let seconds = settling.seconds.min(remaining);
-                let step = crate::integrators::exact::step(&self.state, balance.free, seconds);
-                Slide { step, stops: seconds == settling.seconds }
-            }
-        };
-        let motion = if self.settling.is_some() { Motion::Flying } else { Motion::Sliding };
-        let exit = self.exit(&step);
-        let returns = self.obstacles.returns(&step, &self.contacts, &mut self.counters);
-        let hit = self.obstacles.earliest(&step, &self.contacts, &returns, &mut self.counters);
-        let hit = hit.filter(|hit| exit.is_none_or(|(f, ..)| hit.f < f));
-        let to = hit.map(|hit| hit.f).or(exit.map(|(f, ..)| f)).unwrap_or(step.to);
-        self.travel(&step, to, motion);
-        if to > 0.0 {
-            self.leave_behind();
-        }
-        self.hold_to_surface();
-        match (hit, exit) {
-            (Some(hit), _) => {
-                // Friction at the end of a settling changes the velocity: the path no longer tells it.
-                let step = Step { exact: step.exact && self.settling.is_none(), ..step };
-                self.end_settling();
-                self.arrive(&step, hit, &returns);
-            }
-            (None, Some((_, contact, bound))) => {
-                self.end_settling();
-                self.cross(contact, &bound);
-            }
-            (None, None) if self.settling.is_some() => {
-                if stops {
-                    self.end_settling();
-                }
-            }
-            (None, None) if stops => self.state.velocity = Vector3::zeros(),
-            (None, None) => {
-                if step.time(step.to) >= remaining {
-                    self.clock.set(self.plan.duration);
-                }
-            }
-        }
-    }
-
-    /// Whether a ball that friction cannot hold is so slow that it stands, before it sets out the other way.
-    fn turns_round(&self, balance: &Balance) -> bool {
-        let v = self.state.velocity;
-        let load: f64 = balance.loads.loads().map(|(_, load)| load).sum();
-        balance.friction > 0.0 && balance.free.dot(&v) < 0.0 && v.norm() <= self.plan.rest.at(load).speed
-    }
-
-    /// Forgets what the ball touched where it was, but for what it moves along.
-    fn leave_behind(&mut self) {
-        self.contacts.retain(|c| c.lasting);
-        if let Some(settling) = &mut self.settling {
-            settling.contact = 0;
-        }
-    }
-
-    /// Lets go of contacts that no longer carry; says whether there were any.
-    fn drop_unloaded(&mut self, balance: &Balance) -> bool {
-        if self.settling.is_some() {
-            return false;
-        }
-        let mut loaded = [false; crate::contacts::MAX_CONTACTS];
-        balance.loads.loads().for_each(|(i, _)| loaded[i] = true);
-        let mut place = 0;
-        let mut dropped = false;
-        for contact in self.contacts.iter_mut().filter(|c| c.lasting) {
-            if !loaded[place] {
-                contact.lasting = false;
-                dropped = true;
-            }
-            place += 1;
-        }
-        dropped
-    }
-
-    /// The impacts of the hops that were flown along the surface, all at once; then sliding begins.
-    fn end_settling(&mut self) {
-        if let Some(settling) = self.settling.take() {
-            let contact = self.contacts[settling.contact];
-            let material = &self.plan.surfaces[contact.surface].material;
-            let c_r = material.restitution.coefficient();
-            self.state.velocity = material.friction.slow_to_the_end(self.state.velocity, settling.closing, c_r);
-            self.begin_sliding();
-        }
-    }
-
-    /// Where the step first leaves the region of a lasting contact, and which of the lasting ones that is.
-    fn exit(&mut self, step: &Step) -> Option<(f64, usize, RegionBound)> {
-        let mut first: Option<(f64, usize, RegionBound)> = None;
-        for (i, contact) in self.contacts.iter().filter(|c| c.lasting).enumerate() {
-            if let Some((f, bound)) = self.obstacles.exit(step, contact, &mut self.counters)
-                && first.is_none_or(|(best, ..)| f < best)
-            {
-                first = Some((f, i, bound));
-            }
-        }
-        first
-    }
-
-    /// The neighbouring place takes over.
-    fn cross(&mut self, contact: usize, bound: &RegionBound) {
-        let Some(contact) = self.contacts.iter_mut().filter(|c| c.lasting).nth(contact) else { return };
-        let foot = self.obstacles.mesh(contact.surface).and_then(|m| m.foot(bound.next, &self.state.position));
-        if let Some((_, normal)) = foot {
-            contact.site = Some(bound.next);
-            contact.normal = normal;
-        }
-        if self.motion == Motion::Sliding {
-            self.make_tangential();
-        }
-    }
-
-    /// After moving along lasting contacts: the position on them, their normals where they are now, the velocity along them.
-    fn hold_to_surface(&mut self) {
-        let position = self.state.position;
-        for contact in self.contacts.iter_mut().filter(|c| c.lasting) {
-            let (Some(site), Some(mesh)) = (contact.site, self.obstacles.mesh(contact.surface)) else { continue };
-            if let Some((_, normal)) = mesh.foot(site, &position).filter(|_| mesh.bend(site) != Bend::Flat) {
-                contact.normal = normal;
-            }
-        }
-        let lasting: Contacts = self.contacts.iter().filter(|c| c.lasting).copied().collect();
-        for contact in &lasting {
-            let slack = SLIDING_TOLERANCE * self.obstacles.radius_at(contact);
-            self.correct(contact, self.touch_tolerance(0.0).max(slack));
-        }
-        self.make_tangential();
     }
 
     /// Rests to the end.
@@ -577,16 +143,20 @@ impl<O: Observer> Walk<'_, O> {
         let zero = Vector3::zeros();
         let step =
             crate::integrators::exact::step(&State { velocity: zero, ..self.state }, zero, self.clock.until(end));
-        self.travel(&step, step.to, Motion::Resting);
-        self.clock.set(end);
+        self.travel(&step, step.to, Motion::Resting, Some(end));
+    }
+
+    /// Ends the simulation of this ball by a guard, and says so where it is in contact.
+    fn give_up(&mut self, ending: Ending, kind: EventKind) {
+        self.ending = Some(ending);
+        if let Some(contact) = self.contacts.first().copied() {
+            self.tell(kind, &contact, self.state.velocity);
+        }
     }
 
     fn tell(&mut self, kind: EventKind, contact: &Contact, velocity_in: Vector3<f64>) {
         let numbered = self.plan.surfaces[contact.surface].numbered;
         self.events += 1;
-        if self.events >= EVENT_BUDGET {
-            self.ending = Some(Ending::EventBudget);
-        }
         self.observer.event(&Event {
             time: self.clock.now(),
             kind,
@@ -597,5 +167,8 @@ impl<O: Observer> Walk<'_, O> {
             velocity_in,
             velocity: self.state.velocity,
         });
+        if self.events == EVENT_BUDGET {
+            self.give_up(Ending::EventBudget, EventKind::EventBudget);
+        }
     }
 }

@@ -32,23 +32,15 @@ pub struct Carrier {
 impl Carrier {
     /// The unit normal at `position`.
     fn normal(&self, position: &Point3<f64>) -> Vector3<f64> {
-        let away = match self.bend {
-            Bend::Flat => return self.contact.normal,
-            Bend::Around { point, along } => {
-                let w = position - point;
-                w - along * along.dot(&w)
-            }
-            Bend::About { point } => position - point,
-        };
-        away.try_normalize(0.0).unwrap_or(self.contact.normal)
+        let away = self.bend.away_from(position).and_then(|away| away.try_normalize(0.0));
+        away.unwrap_or(self.contact.normal)
     }
 
     /// The acceleration towards it, in m/s^2, that following its curve takes at `velocity`: v^2 / r across an edge.
     pub fn centripetal(&self, velocity: &Vector3<f64>) -> f64 {
         match self.bend {
             Bend::Flat => 0.0,
-            Bend::Around { along, .. } => (velocity - along * along.dot(velocity)).norm_squared() / self.radius,
-            Bend::About { .. } => velocity.norm_squared() / self.radius,
+            bend => bend.across(velocity).norm_squared() / self.radius,
         }
     }
 }
@@ -64,6 +56,8 @@ pub struct Balance {
     pub sticks: bool,
     /// The loads.
     pub loads: Projection,
+    /// An acceleration that is none, by rounding.
+    rounding: f64,
 }
 
 impl Balance {
@@ -78,15 +72,13 @@ impl Balance {
                 ContactFriction::Sticking => sticks = true,
             }
         }
-        // What rounding leaves of a weight that is carried moves nothing.
-        let noise = loads.velocity.norm() <= rate_rounding(a.norm());
-        let free = if noise { Vector3::zeros() } else { loads.velocity };
-        Self { free, friction, sticks, loads }
+        Self { free: loads.velocity, friction, sticks, loads, rounding: rate_rounding(a.norm()) }
     }
 
     /// Whether the ball, once it stands, stays: |F_t| <= mu |F_n|, compared by squares. No force rests on any surface.
     pub fn holds(&self) -> bool {
-        self.sticks || self.free.norm_squared() <= self.friction * self.friction
+        let friction = self.friction + self.rounding;
+        self.sticks || self.free.norm_squared() <= friction * friction
     }
 
     /// The acceleration of a ball that moves, or begins to, along the unit vector `direction`.
@@ -145,12 +137,11 @@ pub fn slide(
     Slide { step, stops: false }
 }
 
-/// On a curve, the time in which the ball moves by no more than a sixteenth of the radius across it.
+/// On a curve, the time in which the ball moves across it by no more than a sixteenth of the radius.
 fn longest_step(carrier: &Carrier, state: &State, a: &Vector3<f64>) -> f64 {
-    let across = |v: &Vector3<f64>| match carrier.bend {
-        Bend::Flat => 0.0,
-        Bend::Around { along, .. } => (v - along * along.dot(v)).norm(),
-        Bend::About { .. } => v.norm(),
-    };
-    carrier.radius / (16.0 * (across(&state.velocity) + (across(a) * carrier.radius).sqrt()))
+    let across = |v: &Vector3<f64>| carrier.bend.across(v).norm();
+    match carrier.bend {
+        Bend::Flat => f64::INFINITY,
+        _ => carrier.radius / (16.0 * (across(&state.velocity) + (across(a) * carrier.radius).sqrt())),
+    }
 }

@@ -43,7 +43,8 @@ pub fn project_offset(w: &Vector3<f64>, normals: &[Vector3<f64>], allowed: impl 
         return none;
     }
     // How far `v` is from allowed, and how large what rounding makes of its loads.
-    let excess = |v: &Vector3<f64>| normals.iter().enumerate().map(|(i, n)| -(n.dot(v) + allowed(i))).fold(0.0, f64::max);
+    let excess =
+        |v: &Vector3<f64>| normals.iter().enumerate().map(|(i, n)| -(n.dot(v) + allowed(i))).fold(0.0, f64::max);
     let m = normals.len();
     let lack = |v: &Vector3<f64>, i: usize| -(normals[i].dot(v) + allowed(i));
     // If rounding decides and no subset solves, the one that comes nearest.

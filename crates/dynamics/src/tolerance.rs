@@ -99,7 +99,11 @@ pub fn merge_angle_squared(tolerance: f64, radius: f64) -> f64 {
 
 /// Whether a velocity and an acceleration in contact are parallel to rounding, so that the path is straight.
 pub fn parallel(a: &Vector3<f64>, v: &Vector3<f64>) -> bool {
-    a.cross(v).norm() <= 16.0 * UNIT_ROUNDOFF * a.norm() * v.norm()
+    // Of unit vectors: a product of four small numbers would vanish in a small scene.
+    match (a.try_normalize(0.0), v.try_normalize(0.0)) {
+        (Some(a), Some(v)) => a.cross(&v).norm() <= 16.0 * UNIT_ROUNDOFF,
+        _ => true,
+    }
 }
 
 /// Error allowed per step of a sliding motion that has no closed form, relative to the motion.
@@ -110,6 +114,9 @@ pub const FLIGHT_TOLERANCE: f64 = 1.0e-9;
 
 /// The least tolerance the adaptive pair can be asked for: below it the error estimate is rounding.
 pub const LEAST_TOLERANCE: f64 = 1.0e-15;
+
+/// What a tolerance must be, in words: from [`LEAST_TOLERANCE`] to 1.
+pub(crate) const TOLERANCE_RANGE: &str = "between 1e-15 and 1";
 
 /// Less time than this, in s, is none for answers in a row at time `now` (s): 2^10 of the spacing of f64 there. In longer ones the ball gets on.
 pub fn time_resolution(now: f64) -> f64 {

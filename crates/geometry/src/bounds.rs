@@ -67,6 +67,25 @@ impl Aabb {
         (0..3).all(|i| self.min[i].max(other.min[i]) <= self.max[i].min(other.max[i]))
     }
 
+    /// Whether the ray from `x` along `direction`, of any length, meets the closed box; with no direction, whether `x` is in it.
+    /// Computed in plain f64: at a graze either answer may come.
+    pub fn is_ahead(&self, x: &Point3<f64>, direction: &Vector3<f64>) -> bool {
+        let (mut enter, mut leave) = (0.0_f64, f64::INFINITY);
+        for i in 0..3 {
+            if direction[i] == 0.0 {
+                // The ray never leaves this slab, or never is in it.
+                if !(self.min[i] <= x[i] && x[i] <= self.max[i]) {
+                    return false;
+                }
+                continue;
+            }
+            let [a, b] = [self.min[i], self.max[i]].map(|side| (side - x[i]) / direction[i]);
+            enter = enter.max(a.min(b));
+            leave = leave.min(a.max(b));
+        }
+        enter <= leave && !self.is_empty()
+    }
+
     /// The lengths of the sides; zero for an empty box, infinite where f64 has no such length.
     pub fn extent(&self) -> Vector3<f64> {
         if self.is_empty() { Vector3::zeros() } else { self.max - self.min }
@@ -112,6 +131,25 @@ mod tests {
         let beyond = Point3::new(1.0_f64.next_up(), 1.0, 1.0);
         assert!(unit().contains(&corner) && unit().intersects(&Aabb::of_points(&[corner])));
         assert!(!unit().contains(&beyond) && !unit().intersects(&Aabb::of_points(&[beyond])));
+    }
+
+    #[test]
+    fn ahead_is_what_a_ray_meets() {
+        let down = Vector3::new(0.0, 0.0, -2.0);
+        for (x, y, z, ahead) in [
+            (0.5, 0.5, 9.0, true),
+            (0.5, 0.5, 0.5, true),
+            (0.5, 0.5, -0.1, false),
+            (1.5, 0.5, 9.0, false),
+            (1.0, 0.0, 1.0, true),
+        ] {
+            assert_eq!(unit().is_ahead(&Point3::new(x, y, z), &down), ahead, "({x}, {y}, {z})");
+        }
+        let from = Point3::new(-1.0, -1.0, -1.0);
+        assert!(unit().is_ahead(&from, &Vector3::new(1.0, 1.0, 1.0)) && !unit().is_ahead(&from, &-Vector3::x()));
+        assert!(!unit().is_ahead(&from, &Vector3::new(1.0, 3.0, 1.0)) && !unit().is_ahead(&from, &Vector3::zeros()));
+        assert!(unit().is_ahead(&unit().centre(), &Vector3::zeros()));
+        assert!(!Aabb::empty().is_ahead(&from, &Vector3::new(1.0, 1.0, 1.0)));
     }
 
     #[test]

@@ -6,10 +6,11 @@
 //! A ball that overlaps and separates is not an event, however deep: falling is part of the definition, so no tolerance
 //! decides and no position has to be nudged (stable event detection: Bannerman, Strobl, Lue, J. Chem. Phys. 139, 2014).
 
+use crate::bernstein;
 use crate::rounding::{exponent, scale};
 
 /// The highest degree of a path, and so of a clearance.
-pub const MAX_DEGREE: usize = 4;
+pub const MAX_DEGREE: usize = bernstein::DEGREE;
 
 /// A clearance c(f) = c0 + c1 f + c2 f^2 + c3 f^3 + c4 f^4 in the unit of its coefficients.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -82,7 +83,10 @@ impl Clearance {
         }
         let [c0, c1, c2, c3, c4] = self.c;
         if c3 != 0.0 || c4 != 0.0 {
-            return bernstein_entry(self, from, to);
+            return match bernstein::first_entry(&self.c, from, to) {
+                Some(f) => Entry::At { f, rate: self.rate(f).min(0.0) },
+                None => Entry::Never,
+            };
         }
         let local = if from == 0.0 {
             quadratic_entry(c0, c1, c2)
@@ -175,158 +179,6 @@ fn difference_of_products(a: f64, b: f64, c: f64, d: f64) -> f64 {
     a.mul_add(b, -cd) + error
 }
 
-const BINOMIAL: [[f64; 5]; 5] = [
-    [1.0, 0.0, 0.0, 0.0, 0.0],
-    [1.0, 1.0, 0.0, 0.0, 0.0],
-    [1.0, 2.0, 1.0, 0.0, 0.0],
-    [1.0, 3.0, 3.0, 1.0, 0.0],
-    [1.0, 4.0, 6.0, 4.0, 1.0],
-];
-
-/// A stretch of the clearance as Bernstein coefficients over [lo, lo + width].
-#[derive(Clone, Copy)]
-struct Piece {
-    b: [f64; MAX_DEGREE + 1],
-    lo: f64,
-    width: f64,
-}
-
-/// What a piece says about the first entry.
-enum Verdict {
-    /// No entry: the clearance stays positive, or never falls.
-    None,
-    /// The piece begins <= 0 and falling.
-    AtStart,
-    /// Falls all the way, from above 0 to below it: one root.
-    OneRoot,
-    /// Halve it.
-    Unknown,
-}
-
-impl Piece {
-    fn of(clearance: &Clearance, lo: f64, hi: f64) -> Self {
-        let width = hi - lo;
-        // Taylor coefficients at `lo`, in units of the width.
-        let mut taylor = clearance.c;
-        for k in 0..MAX_DEGREE {
-            for i in (k..MAX_DEGREE).rev() {
-                taylor[i] += lo * taylor[i + 1];
-            }
-        }
-        let mut power = 1.0;
-        for t in &mut taylor {
-            *t *= power;
-            power *= width;
-        }
-        let mut b = [0.0; MAX_DEGREE + 1];
-        for (i, bi) in b.iter_mut().enumerate() {
-            for k in (0..=i).rev() {
-                *bi += BINOMIAL[i][k] / BINOMIAL[MAX_DEGREE][k] * taylor[k];
-            }
-        }
-        Self { b, lo, width }
-    }
-
-    fn verdict(&self) -> Verdict {
-        let b = &self.b;
-        if b.iter().all(|&x| x > 0.0) || b.windows(2).all(|w| w[1] >= w[0]) {
-            return Verdict::None;
-        }
-        if b[0] <= 0.0 && b[1] < b[0] {
-            return Verdict::AtStart;
-        }
-        if b[0] > 0.0 && b[MAX_DEGREE] <= 0.0 && b.windows(2).all(|w| w[1] <= w[0]) {
-            return Verdict::OneRoot;
-        }
-        Verdict::Unknown
-    }
-
-    /// The two halves; halving is exact up to the rounding of averages.
-    fn halves(&self) -> (Self, Self) {
-        let mut row = self.b;
-        let (mut left, mut right) = (self.b, self.b);
-        for k in 1..=MAX_DEGREE {
-            for i in 0..=MAX_DEGREE - k {
-                row[i] = 0.5 * (row[i] + row[i + 1]);
-            }
-            left[k] = row[0];
-            right[MAX_DEGREE - k] = row[MAX_DEGREE - k];
-        }
-        let width = 0.5 * self.width;
-        (Self { b: left, lo: self.lo, width }, Self { b: right, lo: self.lo + width, width })
-    }
-
-    /// c at `s` in [0, 1] of the piece (de Casteljau).
-    fn at(&self, s: f64) -> f64 {
-        let mut row = self.b;
-        for k in 1..=MAX_DEGREE {
-            for i in 0..=MAX_DEGREE - k {
-                row[i] += s * (row[i + 1] - row[i]);
-            }
-        }
-        row[0]
-    }
-
-    /// The root of a piece that falls from above 0 to below: regula falsi (Illinois) inside a bracket that halves at the
-    /// latest every third round; the early side of the last bracket.
-    fn only_root(&self) -> f64 {
-        let (mut lo, mut hi) = (0.0, 1.0);
-        let (mut at_lo, mut at_hi) = (self.b[0], self.b[MAX_DEGREE]);
-        let mut rounds = 0;
-        while at_hi < 0.0 && rounds < 200 {
-            let middle = 0.5 * (lo + hi);
-            if middle <= lo || middle >= hi {
-                break;
-            }
-            let secant = lo + (hi - lo) * (at_lo / (at_lo - at_hi));
-            let s = if rounds % 3 == 2 || !(secant > lo && secant < hi) { middle } else { secant };
-            let value = self.at(s);
-            if value > 0.0 {
-                (lo, at_lo) = (s, value);
-                at_hi *= 0.5;
-            } else {
-                (hi, at_hi) = (s, value);
-                at_lo *= 0.5;
-            }
-            if value == 0.0 {
-                lo = s;
-                break;
-            }
-            rounds += 1;
-        }
-        let s = if at_hi == 0.0 { hi } else { lo };
-        self.lo + self.width * s
-    }
-}
-
-/// The first entry of a cubic or quartic: pieces front to back, each ruled out, solved, or halved.
-fn bernstein_entry(clearance: &Clearance, from: f64, to: f64) -> Entry {
-    // Each halving pushes one piece, and after 60 a piece is narrower than the spacing of f.
-    let mut stack = [Piece::of(clearance, from, to); 64];
-    let mut depth = 1;
-    while depth > 0 {
-        depth -= 1;
-        let piece = stack[depth];
-        let f = match piece.verdict() {
-            Verdict::None => continue,
-            Verdict::AtStart => piece.lo,
-            Verdict::OneRoot => piece.only_root(),
-            Verdict::Unknown => {
-                if piece.lo + 0.5 * piece.width > piece.lo && depth + 2 <= stack.len() {
-                    let (left, right) = piece.halves();
-                    stack[depth] = right;
-                    stack[depth + 1] = left;
-                    depth += 2;
-                    continue;
-                }
-                piece.lo // undecided at the resolution of f: on the safe side, a hit
-            }
-        };
-        return Entry::At { f, rate: clearance.rate(f).min(0.0) };
-    }
-    Entry::Never
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -407,10 +259,20 @@ mod tests {
     }
 
     #[test]
+    fn what_is_found_has_the_same_bits_wherever_the_search_ends() {
+        let quartic = Clearance::new([0.3, -1.1, 0.7, 0.45, -0.9]);
+        let f = quartic.first_entry(0.0, 1.0).f().unwrap();
+        for to in [f, f.next_up(), 0.5, 0.75, 0.9] {
+            assert_eq!(quartic.first_entry(0.0, to).f(), (f <= to).then_some(f), "to {to}");
+        }
+        assert_eq!(quartic.first_entry(0.0, f.next_down()), Entry::Never);
+    }
+
+    #[test]
     fn a_higher_degree_with_no_higher_terms_agrees_with_the_closed_form() {
         for (c, b, a) in [(1.0, 0.5, -3.0), (1.0, -2.5, 0.3), (0.0, 1.0, -2.0), (1.0, 1.0, 1.0), (-0.1, 0.5, 2.0)] {
             let exact = quadratic_entry(c, b, a).within(1.0).f();
-            let halved = bernstein_entry(&Clearance::new([c, b, a, 0.0, 0.0]), 0.0, 1.0).f();
+            let halved = bernstein::first_entry(&[c, b, a, 0.0, 0.0], 0.0, 1.0);
             match (exact, halved) {
                 (Some(x), Some(y)) => assert!((x - y).abs() <= 16.0 * UNIT_ROUNDOFF, "{x} {y}"),
                 (x, y) => assert_eq!(x, y),

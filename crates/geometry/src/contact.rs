@@ -6,7 +6,7 @@
 //! was, so the answer is never late; doubt within the rounding bound is a hit. (Conservative advancement: Mirtich 1996; the
 //! support plane makes it exact for a face and quadratically convergent for edges and vertices.)
 
-use crate::clearance::{Clearance, Entry};
+use crate::clearance::Entry;
 use crate::closest::{Feature, closest_point};
 use crate::path::Path;
 use crate::rounding::{UNIT_ROUNDOFF, contact_bound, hold_bound};
@@ -18,10 +18,24 @@ use nalgebra::{Point3, Vector3};
 /// and its neighbours raise no false alarm from rounding.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hold {
-    /// Unit normal towards the ball; the plane touches the ball at start - radius * normal.
+    /// Unit normal towards the ball.
     pub normal: Vector3<f64>,
+    /// A point of the plane.
+    pub point: Point3<f64>,
+    /// How far the ball's position, and so the plane, may be off by rounding.
+    pub slack: f64,
     /// The f at which the path returns to the plane, infinite if never.
     pub until: f64,
+}
+
+impl Hold {
+    /// Whether the triangle is behind the plane, as far as that can be told.
+    fn hides(&self, triangle: &[Point3<f64>; 3]) -> bool {
+        triangle.iter().all(|v| {
+            let d = v - self.point;
+            self.normal.dot(&d) <= self.slack + hold_bound(d.amax())
+        })
+    }
 }
 
 /// A moving ball: its path, its radius, and what it is known to touch at the start.
@@ -40,7 +54,8 @@ pub struct MovingBall<'a> {
 pub enum Contact {
     /// No contact in [0, to]: certified by a plane.
     Miss,
-    /// First contact at `f`, never late; early by no more than the rounding bound.
+    /// First contact at `f`: within one [`contact_bound`] of touching there, and never deeper before. A graze in doubt, which rounding
+    /// keeps from touching, is reported where it is nearest, at most [`contact_doubt`](crate::rounding::contact_doubt) away.
     At {
         /// Where on the path.
         f: f64,
@@ -53,7 +68,15 @@ pub enum Contact {
 const MAX_ROUNDS: u32 = 256;
 
 /// The first f in [`from`, `to`] at which the ball touches `triangle` and closes in; `rounds` counts support planes.
-pub fn first_contact(
+pub fn first_contact(ball: &MovingBall, triangle: &[Point3<f64>; 3], from: f64, to: f64, rounds: &mut u64) -> Contact {
+    match contact_from(ball, triangle, from, to, rounds) {
+        Contact::At { f, feature } => Contact::At { f: f.min(to), feature },
+        Contact::Miss => Contact::Miss,
+    }
+}
+
+/// [`first_contact`], but what is found has the same bits for every `to` <= 1, so that it may lie beyond `to` by rounding.
+pub(crate) fn contact_from(
     ball: &MovingBall,
     triangle: &[Point3<f64>; 3],
     from: f64,
@@ -65,12 +88,13 @@ pub fn first_contact(
     let corners = triangle.map(|v| Point3::from(v - path.start()));
     let size = corners.iter().map(|a| a.coords.amax()).fold(ball.radius, f64::max);
     let bound_at = |f: f64| contact_bound(size + path.reach(f));
+    // Planes are met on the whole path: a contact at `to` is decided as one before it.
+    let end = to.max(1.0);
 
     let mut f = from;
-    let held = hold_bound(path.start().coords.amax().max(ball.radius), size);
     for hold in ball.holds {
-        if farthest_along(&corners, &hold.normal) + ball.radius <= held {
-            f = hold.until.max(f);
+        if hold.until > f && hold.hides(triangle) {
+            f = hold.until;
         }
     }
     for _ in 0..MAX_ROUNDS {
@@ -78,20 +102,15 @@ pub fn first_contact(
             return Contact::Miss;
         }
         *rounds += 1;
-        let centre = path.displacement(f);
-        let closest = closest_point(&corners, &Point3::from(centre));
-        let away = closest.offset;
-        let distance = away.norm();
-        let normal = if distance > 0.0 { away / distance } else { escape_direction(&corners, path, f) };
-        let gap = -farthest_along(&corners, &normal) - ball.radius;
+        let Support { normal, gap, feature } = Support::at(ball, &corners, f);
         // Never late: the plane is moved towards the ball by the bound that holds where the path meets it.
         let mut bound = 2.0 * bound_at(f);
-        let mut entry = path.clearance(gap - bound, &normal).first_entry(f, to);
+        let mut entry = path.clearance(gap - bound, &normal).first_entry(f, end);
         if let Entry::At { f: next, .. } = entry
             && bound_at(next) > bound
         {
             bound = bound_at(next);
-            entry = path.clearance(gap - bound, &normal).first_entry(f, to);
+            entry = path.clearance(gap - bound, &normal).first_entry(f, end);
         }
         let Entry::At { f: next, .. } = entry else {
             return Contact::Miss;
@@ -99,12 +118,35 @@ pub fn first_contact(
         let plane = path.clearance(gap, &normal);
         let touching = plane.at(f) <= 2.0 * bound && plane.rate(f) < 0.0;
         if touching || next - f <= 2.0 * UNIT_ROUNDOFF * f {
-            return Contact::At { f: polish(&plane, f, to, closest.feature), feature: closest.feature };
+            return Contact::At { f: polish(ball, &corners, f, end, rounds), feature };
         }
         f = next;
     }
-    let closest = closest_point(&corners, &Point3::from(path.displacement(f)));
-    Contact::At { f, feature: closest.feature }
+    if f > to {
+        return Contact::Miss;
+    }
+    Contact::At { f, feature: Support::at(ball, &corners, f).feature }
+}
+
+/// A support plane of a triangle, from the start of the path.
+struct Support {
+    /// Unit normal towards the ball.
+    normal: Vector3<f64>,
+    /// The distance between plane and ball at the start.
+    gap: f64,
+    /// What of the triangle is closest to the ball.
+    feature: Feature,
+}
+
+impl Support {
+    /// The plane that faces the ball at `f`.
+    fn at(ball: &MovingBall, corners: &[Point3<f64>; 3], f: f64) -> Self {
+        let closest = closest_point(corners, &Point3::from(ball.path.displacement(f)));
+        let (away, distance) = (closest.offset, closest.offset.norm());
+        let normal = if distance > 0.0 { away / distance } else { escape_direction(corners, ball.path, f) };
+        let gap = -farthest_along(corners, &normal) - ball.radius;
+        Self { normal, gap, feature: closest.feature }
+    }
 }
 
 /// How far the triangle reaches along `normal`, from the start of the path.
@@ -113,12 +155,25 @@ fn farthest_along(corners: &[Point3<f64>; 3], normal: &Vector3<f64>) -> f64 {
     a.max(b).max(c)
 }
 
-/// On a face the support plane is the face's own, so its entry without the bound is the contact to a few roundoffs.
-fn polish(plane: &Clearance, f: f64, to: f64, feature: Feature) -> f64 {
-    match (feature, plane.first_entry(f, to)) {
-        (Feature::Face, Entry::At { f, .. }) => f,
-        _ => f,
+/// Support planes looked at to polish a contact: from within its bound, a graze comes nearer by a factor of 4 with each.
+const MAX_POLISH: u32 = 8;
+
+/// From `f`, where the ball touches to within the bound, to where it touches: support planes again, now where they are. The triangle
+/// is behind them all the same, so this ends at the contact to the rounding of the planes: on a face at once, at an edge or a vertex in
+/// a step or two of Newton's method.
+fn polish(ball: &MovingBall, corners: &[Point3<f64>; 3], f: f64, to: f64, rounds: &mut u64) -> f64 {
+    let mut f = f;
+    for _ in 0..MAX_POLISH {
+        let Support { normal, gap, feature } = Support::at(ball, corners, f);
+        *rounds += 1;
+        let Entry::At { f: next, .. } = ball.path.clearance(gap, &normal).first_entry(f, to) else { break };
+        let arrived = next - f <= 2.0 * UNIT_ROUNDOFF * f || feature == Feature::Face;
+        f = next;
+        if arrived {
+            break;
+        }
     }
+    f
 }
 
 /// Where to look when the centre lies on the triangle: across the face, to the side the ball moves to.

@@ -87,7 +87,7 @@ pub enum PolygonError {
     Collinear,
     /// A vertex is off the plane of the polygon by more than rounding explains.
     #[error(
-        "vertex {vertex} of the polygon is {distance} off its plane, more than the {bound} that rounded coordinates explain; split it into triangles"
+        "vertex {vertex} of the polygon is {distance} off its plane, more than the {bound:e} that rounded coordinates explain; split it into triangles"
     )]
     NotPlanar {
         /// Index of the vertex farthest off, from 0.

@@ -43,6 +43,7 @@ pub mod segment;
 mod simple;
 pub mod polygon;
 pub mod quad;
+mod bernstein;
 pub mod clearance;
 pub mod path;
 pub mod mesh;

@@ -147,14 +147,20 @@ pub fn contact_bound(extent: f64) -> f64 {
     16.0 * UNIT_ROUNDOFF * extent
 }
 
-/// How far a corner of a face that is touched may seem to stand out of the plane that is held, as computed: `coordinate` is the largest
-/// |coordinate| of the centre or the radius, `size` the largest distance that enters, both in m.
+/// How far from touching a ball may be where a contact is reported: 5 [`contact_bound`].
 ///
-/// The centre was put on the plane to a rounding of each of its coordinates, sqrt(3) u, and of the product that put it there; 16 u
-/// `coordinate` is given. The normal is off by [`NORMAL_BOUND`] in each component, which lifts a corner at `size` by sqrt(3) times that; the
-/// rest is [`contact_bound`].
-pub fn hold_bound(coordinate: f64, size: f64) -> f64 {
-    position_bound(coordinate) + 2.0 * NORMAL_BOUND * size + contact_bound(size)
+/// The plane is moved towards the ball by two bounds, and what is as near as that again to the moved plane's place counts as touching; the fifth
+/// is for the rounding of f.
+pub fn contact_doubt(extent: f64) -> f64 {
+    5.0 * contact_bound(extent)
+}
+
+/// How far a point at `distance` from a plane's own may seem to stand out of the plane, as computed from its unit normal.
+///
+/// The normal is off by [`NORMAL_BOUND`] in each component, which lifts the point by sqrt(3) times that; the rest is
+/// [`contact_bound`].
+pub fn hold_bound(distance: f64) -> f64 {
+    2.0 * NORMAL_BOUND * distance + contact_bound(distance)
 }
 
 /// The radius in m that stands for a point against a mesh whose largest |coordinate| is `farthest`: 2^14 units of

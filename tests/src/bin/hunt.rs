@@ -46,11 +46,19 @@ impl Observer for Impatient {
         if self.calls % 256 == 0 && Instant::now() > self.end {
             let events = self.run.events.len();
             if std::env::args().nth(3).as_deref() == Some("show") {
-                for e in self.run.events.iter().take(12) { println!("{e:?}"); }
-                for s in self.run.segments.iter().take(20) { println!("{s:?}"); }
+                for e in self.run.events.iter().take(12) {
+                    println!("{e:?}");
+                }
+                for s in self.run.segments.iter().take(20) {
+                    println!("{s:?}");
+                }
                 println!("...");
-                for e in self.run.events.iter().rev().take(12) { println!("{e:?}"); }
-                for s in self.run.segments.iter().rev().take(20) { println!("{s:?}"); }
+                for e in self.run.events.iter().rev().take(12) {
+                    println!("{e:?}");
+                }
+                for s in self.run.segments.iter().rev().take(20) {
+                    println!("{s:?}");
+                }
             }
             panic!("out of patience ({})", if events > 10_000 { "events" } else { "segments" });
         }
@@ -171,7 +179,11 @@ fn scene(family: &str, seed: u64, store: &Store) -> Option<(Scene, World)> {
                 let n = -gravity;
                 if n.norm() > 0.0 {
                     let p = store.bunny.bounds().centre() - n.normalize() * 3.0;
-                    surfaces.push(surface("floor", material(&mut r), Shape::Plane(Plane::from_point_normal(p, n).unwrap())));
+                    surfaces.push(surface(
+                        "floor",
+                        material(&mut r),
+                        Shape::Plane(Plane::from_point_normal(p, n).unwrap()),
+                    ));
                 }
             }
         }
@@ -180,14 +192,21 @@ fn scene(family: &str, seed: u64, store: &Store) -> Option<(Scene, World)> {
             let grow = if inside == Some(true) { 0.0 } else { 0.1 };
             surfaces.push(surface("stairs", m, body(&store.stairs, &mut low, &mut high, grow)));
             if r.unit() < 0.5 {
-                gravity = r.pick(&[Vector3::new(0., 0., -9.81), Vector3::new(0., -9.81, 0.), Vector3::new(-9.81, 0., 0.), Vector3::new(0., 9.81, 0.)]);
+                gravity = r.pick(&[
+                    Vector3::new(0., 0., -9.81),
+                    Vector3::new(0., -9.81, 0.),
+                    Vector3::new(-9.81, 0., 0.),
+                    Vector3::new(0., 9.81, 0.),
+                ]);
             }
         }
         "terrain" => {
             surfaces.push(surface("terrain", m, body(&store.terrain, &mut low, &mut high, 0.0)));
             high.z += 3.0;
             gravity = Vector3::new(0., 0., -9.81);
-            if r.unit() < 0.8 { low.z = high.z - 2.0; }
+            if r.unit() < 0.8 {
+                low.z = high.z - 2.0;
+            }
             radius *= 5.0;
         }
         "jacksboro" => {
@@ -212,7 +231,11 @@ fn scene(family: &str, seed: u64, store: &Store) -> Option<(Scene, World)> {
             }
             surfaces.push(surface("soup", m, Shape::Mesh(Arc::new(Mesh::new(v, f).unwrap()))));
             let n = if gravity.norm() > 0.0 { -gravity } else { r.vector() };
-            surfaces.push(surface("floor", material(&mut r), Shape::Plane(Plane::from_point_normal(Point3::origin() - n.normalize() * 1.5, n).unwrap())));
+            surfaces.push(surface(
+                "floor",
+                material(&mut r),
+                Shape::Plane(Plane::from_point_normal(Point3::origin() - n.normalize() * 1.5, n).unwrap()),
+            ));
             (low, high) = (Point3::new(-2., -2., -2.), Point3::new(2., 2., 2.));
             radius = if r.unit() < 0.2 { 0.0 } else { r.log(1e-3, 1.0) };
         }
@@ -227,20 +250,33 @@ fn scene(family: &str, seed: u64, store: &Store) -> Option<(Scene, World)> {
             let mut half = r.log(1e-3, 1.2);
             for k in 0..count {
                 let lean = if k % 2 == 0 { half } else { -half };
-                if k == 1 && r.unit() < 0.5 { half = r.log(1e-3, 1.5); }
+                if k == 1 && r.unit() < 0.5 {
+                    half = r.log(1e-3, 1.5);
+                }
                 // The plane contains roughly the axis and leans `lean` from up.
                 let along = axis.cross(&side).normalize();
                 let mut n = side * lean.cos() - along * lean.sin();
-                if n.dot(&side) * (if k % 2 == 0 { 1.0 } else { -1.0 }) > 0.0 { n = -n; }
+                if n.dot(&side) * (if k % 2 == 0 { 1.0 } else { -1.0 }) > 0.0 {
+                    n = -n;
+                }
                 let n = if k >= 2 { axis * (if k == 2 { 1.0 } else { -1.0 }) + up * 0.2 } else { n };
-                let p = if k >= 2 { Point3::origin() - axis * (if k == 2 { 1.0 } else { -1.0 }) } else { Point3::origin() };
+                let p =
+                    if k >= 2 { Point3::origin() - axis * (if k == 2 { 1.0 } else { -1.0 }) } else { Point3::origin() };
                 let shape = if r.unit() < 0.5 {
                     Shape::Plane(Plane::from_point_normal(p, n).unwrap())
                 } else {
                     let n = n.normalize();
                     let a = n.cross(&r.vector()).try_normalize(1e-3)?;
                     let b = n.cross(&a);
-                    Shape::Polygon(Polygon::new(vec![p - a * 4.0 - b * 4.0, p + a * 4.0 - b * 4.0, p + a * 4.0 + b * 4.0, p - a * 4.0 + b * 4.0]).ok()?)
+                    Shape::Polygon(
+                        Polygon::new(vec![
+                            p - a * 4.0 - b * 4.0,
+                            p + a * 4.0 - b * 4.0,
+                            p + a * 4.0 + b * 4.0,
+                            p - a * 4.0 + b * 4.0,
+                        ])
+                        .ok()?,
+                    )
                 };
                 surfaces.push(surface(&format!("w{k}"), if r.unit() < 0.5 { m } else { material(&mut r) }, shape));
             }
@@ -255,11 +291,18 @@ fn scene(family: &str, seed: u64, store: &Store) -> Option<(Scene, World)> {
                 let mut n = Vector3::zeros();
                 n[axis] = if k < 3 { 1.0 } else { -1.0 };
                 let mut p = Point3::new(shift, shift, shift);
-                if k >= 3 { p[axis] += q[axis]; }
-                let shape = if r.unit() < 0.5 { Shape::Plane(Plane::from_point_normal(p, n).unwrap()) } else {
+                if k >= 3 {
+                    p[axis] += q[axis];
+                }
+                let shape = if r.unit() < 0.5 {
+                    Shape::Plane(Plane::from_point_normal(p, n).unwrap())
+                } else {
                     let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
                     let mut v = vec![p; 4];
-                    v[1][i] += q[i]; v[2][i] += q[i]; v[2][j] += q[j]; v[3][j] += q[j];
+                    v[1][i] += q[i];
+                    v[2][i] += q[i];
+                    v[2][j] += q[j];
+                    v[3][j] += q[j];
                     Shape::Polygon(Polygon::new(v).unwrap())
                 };
                 surfaces.push(surface(&format!("s{k}"), if r.unit() < 0.8 { m } else { material(&mut r) }, shape));
@@ -271,7 +314,11 @@ fn scene(family: &str, seed: u64, store: &Store) -> Option<(Scene, World)> {
     }
     let mass = Some(0.1);
     let velocity = r.vector() * speed;
-    let velocity = if family == "box" && r.unit() < 0.4 { r.pick(&[Vector3::new(1., 1., 1.), Vector3::new(1., 0., 0.), Vector3::new(-1., 1., 0.), Vector3::zeros()]) } else { velocity };
+    let velocity = if family == "box" && r.unit() < 0.4 {
+        r.pick(&[Vector3::new(1., 1., 1.), Vector3::new(1., 0., 0.), Vector3::new(-1., 1., 0.), Vector3::zeros()])
+    } else {
+        velocity
+    };
     let ball = |p| Ball::new(p, velocity, radius, mass).unwrap();
     let mut made = Scene {
         duration,
@@ -296,8 +343,12 @@ fn scene(family: &str, seed: u64, store: &Store) -> Option<(Scene, World)> {
                 let d = n.dot(&(p - q));
                 if family == "soup" { d.abs() > radius + 1e-9 } else { d > radius + 1e-9 }
             });
-        if !free { continue; }
-        if let Some(want) = inside && (world.winding(&p).round() != 0.0) != want {
+        if !free {
+            continue;
+        }
+        if let Some(want) = inside
+            && (world.winding(&p).round() != 0.0) != want
+        {
             continue;
         }
         made.balls = vec![ball(p)];
@@ -313,25 +364,49 @@ fn main() {
     let show = count == "show";
     let count: u64 = if show { 1 } else { count.parse().unwrap() };
     let mut store = Store {
-        spot: mesh(SPOT), bunny: mesh(BUNNY), stairs: mesh(STAIRS), terrain: mesh(TERRAIN), jacksboro: mesh(JACKSBORO),
+        spot: mesh(SPOT),
+        bunny: mesh(BUNNY),
+        stairs: mesh(STAIRS),
+        terrain: mesh(TERRAIN),
+        jacksboro: mesh(JACKSBORO),
         worlds: BTreeMap::new(),
     };
-    for (name, mesh) in [("spot", &store.spot), ("stairs", &store.stairs), ("terrain", &store.terrain), ("jacksboro", &store.jacksboro)] {
+    for (name, mesh) in
+        [("spot", &store.spot), ("stairs", &store.stairs), ("terrain", &store.terrain), ("jacksboro", &store.jacksboro)]
+    {
         let m = material(&mut Random(1));
-        let s = Scene { duration: 1.0, gravity: None, drag: None, surfaces: vec![surface(name, m, Shape::Mesh(Arc::clone(mesh)))], balls: vec![], rest: None, method: None };
+        let s = Scene {
+            duration: 1.0,
+            gravity: None,
+            drag: None,
+            surfaces: vec![surface(name, m, Shape::Mesh(Arc::clone(mesh)))],
+            balls: vec![],
+            rest: None,
+            method: None,
+        };
         store.worlds.insert(name, World::of(&s));
     }
     if !show {
         std::panic::set_hook(Box::new(|_| {}));
     }
-    let families: Vec<&str> = if family == "all" { vec!["spot", "bunny", "stairs", "terrain", "jacksboro", "soup", "wedge", "box"] } else { vec![family] };
+    let families: Vec<&str> = if family == "all" {
+        vec!["spot", "bunny", "stairs", "terrain", "jacksboro", "soup", "wedge", "box"]
+    } else {
+        vec![family]
+    };
     for family in families {
         let mut tally: BTreeMap<String, Vec<u64>> = BTreeMap::new();
         let mut worst: BTreeMap<String, f64> = BTreeMap::new();
         let (mut ran, mut events, mut hangs) = (0, 0, 0);
         for seed in from..from + count {
             let Some((scene, world)) = scene(family, seed, &store) else { continue };
-            let plan = match Plan::new(&scene) { Ok(p) => p, Err(e) => { tally.entry(format!("refused {e}")).or_default().push(seed); continue } };
+            let plan = match Plan::new(&scene) {
+                Ok(p) => p,
+                Err(e) => {
+                    tally.entry(format!("refused {e}")).or_default().push(seed);
+                    continue;
+                }
+            };
             ran += 1;
             if show {
                 println!("{:?} {:?} {:?} {:?}", scene.method, scene.drag, scene.gravity, scene.balls);
@@ -341,54 +416,114 @@ fn main() {
             let (send, receive) = std::sync::mpsc::channel();
             let shared = plan.clone();
             let thread = std::thread::spawn(move || {
-                let mut t = Impatient { run: Trajectory::default(), calls: 0, end: Instant::now() + Duration::from_secs(2) };
+                let mut t =
+                    Impatient { run: Trajectory::default(), calls: 0, end: Instant::now() + Duration::from_secs(2) };
                 let o = simulate(&shared, &shared.balls()[0], &mut t);
                 let _ = send.send((t.run, o));
             });
             let result = receive.recv_timeout(Duration::from_secs(4));
             let result = match result {
                 Ok(r) => Ok(r),
-                Err(std::sync::mpsc::RecvTimeoutError::Timeout) => { tally.entry("HANG".into()).or_default().push(seed); hangs += 1; if hangs > 2 { break } continue }
+                Err(std::sync::mpsc::RecvTimeoutError::Timeout) => {
+                    tally.entry("HANG".into()).or_default().push(seed);
+                    hangs += 1;
+                    if hangs > 2 {
+                        break;
+                    }
+                    continue;
+                }
                 Err(_) => Err(()),
             };
-            let message = thread.join().err().and_then(|e| e.downcast_ref::<String>().cloned().or(e.downcast_ref::<&str>().map(|s| s.to_string())));
+            let message = thread
+                .join()
+                .err()
+                .and_then(|e| e.downcast_ref::<String>().cloned().or(e.downcast_ref::<&str>().map(|s| s.to_string())));
             let took = began.elapsed();
             let mut bad = |what: String| tally.entry(what).or_default().push(seed);
-            let Ok((run, outcome)) = result else { bad(format!("panic {}", message.unwrap_or_default())); continue };
+            let Ok((run, outcome)) = result else {
+                bad(format!("panic {}", message.unwrap_or_default()));
+                continue;
+            };
             events += run.events.len();
-            if took > Duration::from_millis(1000) { bad(format!("slow")); }
-            if outcome.ending != Ending::Completed { bad(format!("{:?}", outcome.ending)); }
-            if run.events.len() > 10_000 { bad("many events".into()); }
-            if run.segments.len() > 100_000 { bad("many segments".into()); }
+            if took > Duration::from_millis(1000) {
+                bad(format!("slow"));
+            }
+            if outcome.ending != Ending::Completed {
+                bad(format!("{:?}", outcome.ending));
+            }
+            if run.events.len() > 10_000 {
+                bad("many events".into());
+            }
+            if run.segments.len() > 100_000 {
+                bad("many segments".into());
+            }
             if show {
-                println!("{:?} {:?} {:?} {:?} m {:?} took {took:?}", scene.method, scene.drag, scene.gravity, scene.balls, scene.surfaces.iter().map(|s| s.material).collect::<Vec<_>>());
+                println!(
+                    "{:?} {:?} {:?} {:?} m {:?} took {took:?}",
+                    scene.method,
+                    scene.drag,
+                    scene.gravity,
+                    scene.balls,
+                    scene.surfaces.iter().map(|s| s.material).collect::<Vec<_>>()
+                );
                 println!("{outcome:?}");
                 let n = run.events.len();
                 for (i, e) in run.events.iter().enumerate() {
-                    if i < 12 || i + 20 > n { println!("  {i} t={} {:?} s{} {:?} x={:?} n={:?} {:?} -> {:?}", e.time, e.kind, e.surface, e.face, e.position, e.normal.data.0[0], e.velocity_in.data.0[0], e.velocity.data.0[0]); }
+                    if i < 12 || i + 20 > n {
+                        println!(
+                            "  {i} t={} {:?} s{} {:?} x={:?} n={:?} {:?} -> {:?}",
+                            e.time,
+                            e.kind,
+                            e.surface,
+                            e.face,
+                            e.position,
+                            e.normal.data.0[0],
+                            e.velocity_in.data.0[0],
+                            e.velocity.data.0[0]
+                        );
+                    }
                 }
                 let n = run.segments.len();
                 println!("  {n} segments");
                 for (i, s) in run.segments.iter().enumerate() {
-                    if i < 8 || i + 12 > n || (12..44).contains(&i) { println!("  {i} t={} {:?} to {} of {} s, x={:?} v={:?} a={:?}", s.time, s.motion, s.to, s.step.seconds, s.step.path.start(), s.step.velocity[0].data.0[0], (s.step.velocity[1]/s.step.seconds).data.0[0]); }
+                    if i < 8 || i + 12 > n || (12..44).contains(&i) {
+                        println!(
+                            "  {i} t={} {:?} to {} of {} s, x={:?} v={:?} a={:?}",
+                            s.time,
+                            s.motion,
+                            s.to,
+                            s.step.seconds,
+                            s.step.path.start(),
+                            s.step.velocity[0].data.0[0],
+                            (s.step.velocity[1] / s.step.seconds).data.0[0]
+                        );
+                    }
                 }
             }
-            if run.segments.len() > 300_000 { continue; }
+            if run.segments.len() > 300_000 {
+                continue;
+            }
             let checker = Checker::run(&world, &scene, &scene.balls[0], &run, &outcome);
             let mut seen = std::collections::BTreeSet::new();
             for f in &checker.findings {
-                if seen.insert(f.flaw) { bad(format!("{:?}", f.flaw)); }
+                if seen.insert(f.flaw) {
+                    bad(format!("{:?}", f.flaw));
+                }
             }
             for (flaw, ratio) in &checker.worst {
                 let w = worst.entry(format!("{flaw:?}")).or_insert(0.0);
                 *w = w.max(*ratio);
             }
             if show {
-                for f in checker.findings.iter().take(20) { println!("  {:?} t={} {:e} > {:e}: {}", f.flaw, f.time, f.amount, f.allowed, f.note); }
+                for f in checker.findings.iter().take(20) {
+                    println!("  {:?} t={} {:e} > {:e}: {}", f.flaw, f.time, f.amount, f.allowed, f.note);
+                }
             }
         }
         println!("{family}: {ran} balls, {events} events");
-        for (what, seeds) in &tally { println!("   {what}: {} {:?}", seeds.len(), &seeds[..seeds.len().min(14)]); }
+        for (what, seeds) in &tally {
+            println!("   {what}: {} {:?}", seeds.len(), &seeds[..seeds.len().min(14)]);
+        }
         println!("   worst/allowed {:?}", worst.iter().map(|(k, v)| format!("{k} {v:.2e}")).collect::<Vec<_>>());
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::cli::CheckArgs;
 use crate::error::AppError;
-use crate::mesh_file;
+use crate::mesh_file::{self, MeshFileError};
 use crate::scene::problem::{Severity, render_plain};
 use crate::scene::{self, Loaded};
 use crate::terminal::{say, styled};
@@ -30,8 +30,11 @@ pub fn check(args: &CheckArgs) -> Result<(), AppError> {
 }
 
 fn check_mesh(path: &Path) -> Result<(), AppError> {
-    let mesh = mesh_file::read(path).map_err(|e| AppError::Mesh(e.to_string()))?;
-    let size = format!("{} vertices, {} faces", mesh.vertices.len(), mesh.faces.len());
+    let mesh = mesh_file::read(path).map_err(|error| match error {
+        MeshFileError::Io { path, source } => AppError::Read { path, source },
+        error => AppError::Mesh(error.to_string()),
+    })?;
+    let size = [count(mesh.vertices.len(), "vertex", "vertices"), count(mesh.faces.len(), "face", "faces")].join(", ");
     conclude(&path.display().to_string(), &size, examine(&path.display().to_string(), &mesh.vertices, &mesh.faces))
 }
 
@@ -45,7 +48,8 @@ fn check_scene(path: &Path) -> Result<(), AppError> {
             totals.warnings += found.warnings;
         }
     }
-    let size = format!("{} surfaces, {} balls", scene.surfaces.len(), scene.balls.len());
+    let surfaces = count(scene.surfaces.len(), "surface", "surfaces");
+    let size = [surfaces, count(scene.balls.len(), "ball", "balls")].join(", ");
     conclude(&path.display().to_string(), &size, totals)
 }
 
@@ -107,10 +111,14 @@ fn tell(severity: doctor::Severity, message: &str) {
 }
 
 fn conclude(path: &str, size: &str, totals: Totals) -> Result<(), AppError> {
-    let Totals { errors, warnings } = totals;
-    if errors > 0 {
-        return Err(AppError::Mesh(format!("{path}: {errors} errors, {warnings} warnings")));
+    let warnings = count(totals.warnings, "warning", "warnings");
+    if totals.errors > 0 {
+        return Err(AppError::Mesh(format!("{path}: {}, {warnings}", count(totals.errors, "error", "errors"))));
     }
-    say(&format!("{path}: valid ({size}, {warnings} warnings)"));
+    say(&format!("{path}: valid ({size}, {warnings})"));
     Ok(())
+}
+
+fn count(n: usize, one: &str, many: &str) -> String {
+    format!("{n} {}", if n == 1 { one } else { many })
 }

@@ -27,15 +27,21 @@ pub fn run(args: &RunArgs) -> Result<(), AppError> {
     // Why the run was broken off: an output that cannot be written, or none that is read any more.
     let mut stopped = None;
     let threads = args.threads.map(NonZeroUsize::get);
-    let simulated = run_balls(&plan, threads, |ball| recording.of(ball), |ball, recorder, outcome| {
-        tally.add(ball, &outcome);
-        progress.step();
-        match files.write(&recorder) {
-            Ok(Demand::Open) => ControlFlow::Continue(()),
-            Ok(Demand::Closed) => ControlFlow::Break(stopped = Some(Ok(()))),
-            Err(error) => ControlFlow::Break(stopped = Some(Err(error))),
-        }
-    });
+    let simulated = run_balls(
+        &plan,
+        threads,
+        |ball| recording.of(ball),
+        |ball, recorder, outcome| {
+            tally.add(ball, &outcome);
+            progress.step();
+            stopped = match files.write(&recorder) {
+                Ok(Demand::Open) => return ControlFlow::Continue(()),
+                Ok(Demand::Closed) => Some(Ok(())),
+                Err(error) => Some(Err(error)),
+            };
+            ControlFlow::Break(())
+        },
+    );
     progress.finish();
     simulated.map_err(|e| AppError::Internal(e.to_string()))?;
     if let Some(result) = stopped {

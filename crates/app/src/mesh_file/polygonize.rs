@@ -13,8 +13,10 @@ use nalgebra::Point3;
 /// a polygon, in a plane or seen along the dominant axis of its normal. A face whose corners are on one line becomes
 /// triangles without area, which the mesh doctor names.
 pub(super) fn polygonize(vertices: &[Point3<f64>], corners: &[u32]) -> Result<Vec<[u32; 3]>, String> {
-    if let [a, b, c] = *corners {
-        return Ok(vec![[a, b, c]]);
+    match *corners {
+        [] | [_] | [_, _] => return Err(format!("a face needs three corners or more, but has {}", corners.len())),
+        [a, b, c] => return Ok(vec![[a, b, c]]),
+        _ => {}
     }
     let place = |corner: u32| vertices[corner as usize];
     // A corner given twice in a row adds nothing.
@@ -25,7 +27,7 @@ pub(super) fn polygonize(vertices: &[Point3<f64>], corners: &[u32]) -> Result<Ve
     }
     let points: Vec<Point3<f64>> = ring.iter().map(|&corner| place(corner)).collect();
     let triangles = match points[..] {
-        [] | [_] | [_, _] => return Ok(corners.get(..3).map(|c| [c[0], c[1], c[2]]).into_iter().collect()),
+        [] | [_] | [_, _] => return Ok(vec![[corners[0], corners[1], corners[2]]]),
         [_, _, _] => Ok(vec![[0, 1, 2]]),
         [a, b, c, d] => quad([a, b, c, d]),
         _ => polygon(&points),

@@ -55,7 +55,9 @@ fn read_binary(facets: &[u8]) -> Result<RawMesh, Fault> {
         let corners = [corner(0), corner(1), corner(2)];
         if let Some(x) = corners.iter().flatten().find(|x| !x.is_finite()) {
             let byte = HEADER + COUNT + FACET * number;
-            return Err(Fault::whole(format!("facet {number} (byte {byte}) has the coordinate {x}, which is not finite")));
+            return Err(Fault::whole(format!(
+                "facet {number} (byte {byte}) has the coordinate {x}, which is not finite"
+            )));
         }
         welder.facet(corners)?;
     }
@@ -134,5 +136,54 @@ impl Welder {
         }
         self.mesh.faces.push(face);
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ASCII: &str = "solid a hill\n facet normal 0 0 1\n  outer loop\n   vertex 0 -0 0\n   vertex 1e0 0 0\n   vertex 0 1 0.1\n\
+        endloop\n endfacet\n facet normal 0 0 1\n  outer loop\n   vertex 1 0 0\n   vertex 1 1 0\n   vertex 0 1 0.1\n  endloop\n\
+        endfacet\nendsolid a hill\nsolid\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 0 1\nendloop\nendfacet\nendsolid\n";
+
+    /// The facets of `ASCII` in binary, behind a header that looks like ASCII.
+    fn binary() -> Vec<u8> {
+        let mut bytes = b"solid but binary".to_vec();
+        bytes.resize(HEADER, b' ');
+        bytes.extend(3_u32.to_le_bytes());
+        let facets: [[f32; 9]; 3] = [
+            [0., -0., 0., 1., 0., 0., 0., 1., 0.1],
+            [1., 0., 0., 1., 1., 0., 0., 1., 0.1],
+            [0., 0., 0., 1., 0., 0., 0., 0., 1.],
+        ];
+        for facet in facets {
+            bytes.extend([0; 12]);
+            facet.iter().for_each(|x| bytes.extend(x.to_le_bytes()));
+            bytes.extend([7; 2]);
+        }
+        bytes
+    }
+
+    #[test]
+    fn equal_vertices_are_one_in_all_solids_and_zeros_are_equal() {
+        let mesh = read(ASCII.as_bytes()).unwrap_or_else(|fault| panic!("{fault:?}"));
+        assert_eq!(mesh.faces, [[0, 1, 2], [1, 3, 2], [0, 1, 4]]);
+        assert_eq!(mesh.vertices[2], Point3::new(0.0, 1.0, 0.1));
+        let same = read(&binary()).unwrap_or_else(|fault| panic!("{fault:?}"));
+        assert_eq!(same.faces, mesh.faces);
+        // A binary file holds f32.
+        assert_eq!(same.vertices[2].z, f64::from(0.1_f32));
+    }
+
+    #[test]
+    fn a_file_cut_off_anywhere_is_an_error_and_never_panics() {
+        let binary = binary();
+        assert!((0..binary.len()).all(|end| read(&binary[..end]).is_err()));
+        for end in 0..ASCII.len() {
+            // Between its solids an ASCII file is complete.
+            let depth = ASCII[..end].matches("solid").count() - 2 * ASCII[..end].matches("endsolid").count();
+            assert!(read(&ASCII.as_bytes()[..end]).is_err() || depth == 0, "{end}");
+        }
     }
 }

@@ -12,7 +12,8 @@ const INTERRUPTED: i32 = 130;
 /// Refuses outputs that would be written into each other.
 pub fn refuse_clashes(args: &RunArgs) -> Result<(), AppError> {
     let outputs = [("--events", &args.events), ("--frames", &args.frames), ("--summary", &args.summary)];
-    let outputs: Vec<(&str, &Path)> = outputs.iter().filter_map(|(name, path)| Some((*name, path.as_deref()?))).collect();
+    let outputs: Vec<(&str, &Path)> =
+        outputs.iter().filter_map(|(name, path)| Some((*name, path.as_deref()?))).collect();
     for (i, (name, path)) in outputs.iter().enumerate() {
         if let Some((other, _)) = outputs[..i].iter().find(|(_, p)| p == path) {
             let place = if is_stdout(path) { "standard output".to_owned() } else { path.display().to_string() };

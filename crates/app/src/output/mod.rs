@@ -25,7 +25,9 @@ impl Format {
             _ if target::is_stdout(path) => Ok(Self::Csv),
             Some("csv") => Ok(Self::Csv),
             Some("jsonl") => Ok(Self::JsonLines),
-            _ => Err(AppError::Usage(format!("{}: the form follows from the extension, .csv or .jsonl", path.display()))),
+            _ => {
+                Err(AppError::Usage(format!("{}: the form follows from the extension, .csv or .jsonl", path.display())))
+            }
         }
     }
 }

@@ -7,7 +7,8 @@ use carom_dynamics::surface::Surface;
 use std::fmt::{self, Write};
 
 const EVENT_COLUMNS: [&str; 17] = [
-    "t", "ball", "kind", "surface", "face", "x", "y", "z", "nx", "ny", "nz", "vx_in", "vy_in", "vz_in", "vx", "vy", "vz",
+    "t", "ball", "kind", "surface", "face", "x", "y", "z", "nx", "ny", "nz", "vx_in", "vy_in", "vz_in", "vx", "vy",
+    "vz",
 ];
 
 const FRAME_COLUMNS: [&str; 9] = ["t", "ball", "x", "y", "z", "vx", "vy", "vz", "state"];
@@ -81,6 +82,8 @@ fn kind(kind: EventKind) -> &'static str {
         EventKind::Rest => "rest",
         EventKind::Leave => "leave",
         EventKind::Wake => "wake",
+        EventKind::EventBudget => "event-budget",
+        EventKind::UnresolvedContact => "unresolved-contact",
         _ => "other",
     }
 }

@@ -22,7 +22,10 @@ enum Writer {
     /// Standard output that its reader has closed: what is written is gone, and that is no error.
     Closed,
     /// A new file beside the one it will replace.
-    Beside { file: BufWriter<NamedTempFile>, path: PathBuf },
+    Beside {
+        file: BufWriter<NamedTempFile>,
+        path: PathBuf,
+    },
     /// Something that is no regular file, such as /dev/null or a named pipe: it cannot be replaced.
     Direct(BufWriter<File>),
 }
@@ -73,7 +76,8 @@ impl Target {
         };
         self.settle(flushed)?;
         if let Writer::Beside { file, path } = self.writer {
-            let renamed = file.into_inner().map_err(|e| e.into_error()).and_then(|f| f.persist(path).map_err(|e| e.error));
+            let renamed =
+                file.into_inner().map_err(|e| e.into_error()).and_then(|f| f.persist(path).map_err(|e| e.error));
             renamed.map_err(|source| AppError::Write { path: self.shown, source })?;
         }
         Ok(())
@@ -104,7 +108,9 @@ impl Writer {
         let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
         match std::fs::metadata(&path) {
             Ok(meta) if meta.is_dir() => return Err(ErrorKind::IsADirectory.into()),
-            Ok(meta) if !meta.is_file() => return File::options().write(true).open(&path).map(BufWriter::new).map(Self::Direct),
+            Ok(meta) if !meta.is_file() => {
+                return File::options().write(true).open(&path).map(BufWriter::new).map(Self::Direct);
+            }
             _ => {}
         }
         let folder = match path.parent() {

@@ -163,7 +163,8 @@ impl Builder<'_> {
                 self.accept(at!["rest", key.unwrap_or("speed")], rest)
             }
             _ => {
-                let problem = Problem::new("the rest thresholds are either `length`, or `speed`, `distance` and `force`");
+                let problem =
+                    Problem::new("the rest thresholds are either `length`, or `speed`, `distance` and `force`");
                 self.refuse(at!["rest"], problem.help("without [rest] they follow from the scene"));
                 None
             }
@@ -209,7 +210,6 @@ impl Builder<'_> {
 fn places(first: [f64; 3], count: [u32; 3], step: [f64; 3]) -> impl Iterator<Item = Point3<f64>> {
     let at = move |axis: usize, n: u32| first[axis] + f64::from(n) * step[axis];
     let [nx, ny, nz] = count;
-    (0..nz).flat_map(move |k| {
-        (0..ny).flat_map(move |j| (0..nx).map(move |i| Point3::new(at(0, i), at(1, j), at(2, k))))
-    })
+    (0..nz)
+        .flat_map(move |k| (0..ny).flat_map(move |j| (0..nx).map(move |i| Point3::new(at(0, i), at(1, j), at(2, k)))))
 }

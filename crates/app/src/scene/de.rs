@@ -18,9 +18,12 @@ pub fn from_node<T: for<'de> Deserialize<'de>>(mut node: Node) -> Result<T, Vec<
         match T::deserialize(&node) {
             Ok(value) if problems.is_empty() => return Ok(value),
             Ok(_) => return Err(problems),
-            Err(Error { problem, unknown_key }) => {
-                let again = unknown_key && problem.span().is_some_and(|at| node.remove(&at.clone()));
-                problems.push(problem);
+            Err(Error { problem, kind }) => {
+                let again = kind == Kind::UnknownKey && problem.span().is_some_and(|at| node.remove(at));
+                // A key that is missing after an unknown one was probably that one, mistyped.
+                if kind != Kind::MissingKey || problems.is_empty() {
+                    problems.push(problem);
+                }
                 if !again {
                     return Err(problems);
                 }
@@ -33,12 +36,20 @@ pub fn from_node<T: for<'de> Deserialize<'de>>(mut node: Node) -> Result<T, Vec<
 #[derive(Debug)]
 pub struct Error {
     problem: Problem,
-    unknown_key: bool,
+    kind: Kind,
+}
+
+/// What becomes of the reading after a problem.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    UnknownKey,
+    MissingKey,
+    Other,
 }
 
 impl Error {
     fn new(problem: Problem) -> Self {
-        Self { problem, unknown_key: false }
+        Self { problem, kind: Kind::Other }
     }
 
     fn at(self, span: &Span) -> Self {
@@ -74,7 +85,7 @@ impl de::Error for Error {
     fn unknown_field(field: &str, expected: &'static [&'static str]) -> Self {
         let problem = Problem::new(format!("unknown key `{field}`"));
         let problem = problem.help(choose(field, "valid keys here", expected.iter().copied()));
-        Self { problem, unknown_key: true }
+        Self { problem, kind: Kind::UnknownKey }
     }
 
     fn unknown_variant(variant: &str, expected: &'static [&'static str]) -> Self {
@@ -84,10 +95,11 @@ impl de::Error for Error {
 
     fn missing_field(field: &'static str) -> Self {
         let problem = Problem::new(format!("the key `{field}` is missing"));
-        Self::new(match example(field) {
+        let problem = match example(field) {
             Some(example) => problem.help(format!("add it, such as {example}")),
             None => problem,
-        })
+        };
+        Self { problem, kind: Kind::MissingKey }
     }
 }
 
@@ -168,8 +180,11 @@ impl<'de> de::Deserializer<'de> for &'de Node {
             Value::Table(entries) => match entries.as_slice() {
                 [entry] => visitor.visit_enum(Choice { entry }),
                 _ => Err(Error::new(
-                    Problem::new(format!("expected exactly one key, found {}", entries.len()))
-                        .help(choose("", "one of", variants.iter().copied())),
+                    Problem::new(format!("expected exactly one key, found {}", entries.len())).help(choose(
+                        "",
+                        "one of",
+                        variants.iter().copied(),
+                    )),
                 )),
             },
             _ => self.deserialize_any(visitor),

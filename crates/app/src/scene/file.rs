@@ -9,6 +9,10 @@ use std::collections::BTreeMap;
 #[serde(deny_unknown_fields, expecting = "a scene, which is a table")]
 #[schemars(title = "Carom scene")]
 pub struct SceneFile {
+    /// The schema of this file, for editors of JSON; it says nothing to the simulation.
+    #[serde(rename = "$schema")]
+    #[allow(dead_code, reason = "read so that it is allowed, and no more")]
+    pub schema: Option<String>,
     /// The version of this format: 1.
     #[schemars(range(min = 1, max = 1))]
     pub version: u64,

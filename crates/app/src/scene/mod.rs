@@ -121,10 +121,8 @@ pub fn load(path: &Path, balls: Option<&Path>) -> Result<Loaded, AppError> {
 /// The keys and types of a scene, or all that is wrong with them.
 fn structure(tree: &Node) -> Result<SceneFile, Vec<Problem>> {
     let non_finite = tree.non_finite();
-    let mut problems: Vec<Problem> = non_finite
-        .into_iter()
-        .map(|(span, x)| Problem::new(format!("{x} is not a finite number")).at(span))
-        .collect();
+    let mut problems: Vec<Problem> =
+        non_finite.into_iter().map(|(span, x)| Problem::new(format!("{x} is not a finite number")).at(span)).collect();
     match de::from_node(tree.clone()) {
         Ok(file) if problems.is_empty() => Ok(file),
         Ok(_) => Err(problems),

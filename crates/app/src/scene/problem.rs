@@ -98,7 +98,7 @@ fn suggestion<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Optio
     known
         .into_iter()
         .map(|k| (strsim::damerau_levenshtein(&word.to_lowercase(), &k.to_lowercase()), k))
-        .filter(|(distance, k)| *distance <= 1 + k.len().max(word.len()) / 4)
+        .filter(|(distance, k)| *distance <= k.len().max(word.len()) / 3)
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, k)| k)
 }

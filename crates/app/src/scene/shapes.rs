@@ -57,7 +57,8 @@ fn material(
         }
         Some(name) => materials.get(name).copied().unwrap_or_else(|| {
             let problem = Problem::new(format!("unknown material {name:?}"));
-            builder.refuse(at!["surfaces", i, "material"], problem.help(choose(name, "the scene's materials", names())));
+            builder
+                .refuse(at!["surfaces", i, "material"], problem.help(choose(name, "the scene's materials", names())));
             None
         }),
     }

@@ -1,8 +1,6 @@
 //! Every way a scene, a mesh or a list of balls can be wrong: what the user is told, and that no output is left behind.
 
-mod common;
-
-use common::{Folder, shown};
+use crate::common::{Folder, shown};
 
 /// A scene with nothing wrong in it; each test breaks one thing.
 const SCENE: &str = r#"version = 1
@@ -116,7 +114,6 @@ scenes! {
     negative_radius: "radius = 0.033" => "radius = -0.033";
     zero_mass: "mass = 0.058" => "mass = 0";
     drag_without_mass: "mass = 0.058" => "";
-    quadratic_drag_without_mass: "mass = 0.058" => "\n[other]";
     wind_without_drag: "drag = { linear = 0.05 }" => "";
     drag_without_density: "linear = 0.05" => "coefficient = 0.47";
     negative_density: "linear = 0.05" => "coefficient = 0.47, density = -1.2";
@@ -153,10 +150,18 @@ scenes! {
 
 #[test]
 fn several_at_once_are_all_told_in_the_order_of_the_file() {
-    let scene = broken("restitution = 0.75", "restitution = 7.5").replace("0.033", "-1").replace("duration = 3.0", "duration = 0");
+    let scene = broken("restitution = 0.75", "restitution = 7.5")
+        .replace("0.033", "-1")
+        .replace("duration = 3.0", "duration = 0");
     refused_scene("several_at_once", &scene);
     let scene = broken("restitution", "restituton").replace("radius", "raduis");
     refused_scene("several_keys_at_once", &scene);
+}
+
+#[test]
+fn quadratic_drag_without_mass() {
+    let scene = broken("linear = 0.05", "coefficient = 0.47, density = 1.2").replace("mass = 0.058", "");
+    refused_scene("quadratic_drag_without_mass", &scene);
 }
 
 #[test]
@@ -229,9 +234,11 @@ fn meshes_in_obj() {
 fn missing_mesh() {
     let scene = broken("plane = { point = [0, 0, 0], normal = [0, 0, 1] }", "mesh = { file = \"nowhere.obj\" }");
     refused_scene("missing_mesh", &scene);
-    let scene = broken("plane = { point = [0, 0, 0], normal = [0, 0, 1] }", "mesh = { file = \"hill.obj\", scale = 0 }");
+    let scene =
+        broken("plane = { point = [0, 0, 0], normal = [0, 0, 1] }", "mesh = { file = \"hill.obj\", scale = 0 }");
     refused_scene("mesh_scale_zero", &scene);
-    let scene = broken("plane = { point = [0, 0, 0], normal = [0, 0, 1] }", "mesh = { file = \"hill.obj\", up = \"w\" }");
+    let scene =
+        broken("plane = { point = [0, 0, 0], normal = [0, 0, 1] }", "mesh = { file = \"hill.obj\", up = \"w\" }");
     refused_scene("mesh_up_w", &scene);
 }
 
@@ -273,7 +280,11 @@ fn meshes_in_ply() {
     refused_mesh("ply_word_for_a_number", "hill.ply", ply.replace("0 1 0", "0 x 0").as_bytes());
     refused_mesh("ply_without_z", "hill.ply", ply.replace("property double z\n", "").as_bytes());
     refused_mesh("ply_of_no_faces", "hill.ply", ply.replace("element face 1", "element face 0").as_bytes());
-    refused_mesh("ply_of_endless_faces", "hill.ply", ply.replace("element face 1", "element face 999999999999").as_bytes());
+    refused_mesh(
+        "ply_of_endless_faces",
+        "hill.ply",
+        ply.replace("element face 1", "element face 999999999999").as_bytes(),
+    );
     refused_mesh("ply_face_of_two", "hill.ply", ply.replace("3 0 1 2", "2 0 1").as_bytes());
     refused_mesh("ply_empty", "hill.ply", b"");
     refused_mesh("ply_that_is_none", "hill.ply", b"just some words\n");

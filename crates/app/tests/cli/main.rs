@@ -1,0 +1,7 @@
+//! Tests of the real program: what it is given, what it says, what it leaves.
+
+mod bad_input;
+mod commands;
+mod common;
+mod run;
+mod scenes;

@@ -1,0 +1,118 @@
+//! Flying: one pass of the slides' loop, and the answer to what is hit.
+
+use super::Walk;
+use crate::collision::{Hit, Returns};
+use crate::contacts::Contact;
+use crate::events::{EventKind, Motion};
+use crate::integrators::Step;
+use crate::observer::Observer;
+use crate::response::respond;
+use crate::tolerance::{rate_rounding, touch_distance};
+use carom_geometry::clearance::Entry;
+
+impl<O: Observer> Walk<'_, O> {
+    /// One pass of the slides' loop.
+    pub(super) fn fly(&mut self) {
+        let end = self.step_end();
+        let remaining = self.clock.until(end);
+        let mut timestep = remaining;
+        for _ in 0..self.halvings {
+            timestep *= 0.5;
+        }
+        let rounding = rate_rounding(self.state.velocity.norm());
+        let tangential = self.contacts.iter().any(|c| c.rate <= rounding);
+        let step = self.integrator.step(&self.forces, &self.state, timestep, tangential, &mut self.counters);
+        let returns = self.obstacles.returns(&step, &self.contacts, &mut self.counters);
+        let hit = self.obstacles.earliest(&step, &self.contacts, &returns, &mut self.counters);
+        match hit {
+            None => {
+                let whole = timestep == remaining && step.time(step.to) >= remaining;
+                self.travel(&step, step.to, Motion::Flying, whole.then_some(end));
+                self.contacts.clear();
+                self.halvings = 0;
+            }
+            Some(hit) => {
+                self.travel(&step, hit.f, Motion::Flying, None);
+                self.arrive(&step, hit, &returns);
+            }
+        }
+    }
+
+    /// At a collision: what is touched, how fast, and the answer.
+    pub(super) fn arrive(&mut self, step: &Step, hit: Hit, returns: &Returns) {
+        let tolerance = self.touch_tolerance(step.path.reach(hit.f)).max(self.obstacles.doubt(step, &hit));
+        let before = std::mem::take(&mut self.contacts);
+        let mut contacts =
+            self.obstacles.touching(&self.state.position, &self.state.velocity, tolerance, &mut self.counters);
+        for contact in &mut contacts {
+            self.correct(contact, tolerance);
+            contact.rate = self.rate(step, hit, contact, &before, returns);
+        }
+        let carried = |c: &Contact| before.iter().any(|b| b.lasting && b.surface == c.surface && b.site == c.site);
+        if let Some(contact) = contacts.iter().find(|c| c.rate < 0.0)
+            && step.exact
+        {
+            // The normal speed is known better from the clearance than from the velocity.
+            let n = contact.normal;
+            self.state.velocity += n * (contact.rate - n.dot(&self.state.velocity));
+        }
+        let closing: Vec<bool> = contacts.iter().map(|c| c.rate < 0.0).collect();
+        if closing.contains(&true) {
+            let materials: Vec<_> = contacts.iter().map(|c| self.plan.surfaces[c.surface].material).collect();
+            let velocity_in = self.state.velocity;
+            self.state.velocity = respond(velocity_in, &mut contacts, &materials, &mut self.counters);
+            self.counters.impacts += 1;
+            self.halvings = 0;
+            for (contact, _) in contacts.iter().zip(&closing).filter(|(_, closing)| **closing) {
+                self.tell(EventKind::Impact, contact, velocity_in);
+            }
+        }
+        for contact in &mut contacts {
+            contact.lasting = carried(contact) && contact.rate == 0.0;
+        }
+        self.contacts = contacts;
+        let answered = closing.contains(&true);
+        let carried = self.settle();
+        if !answered && !carried && (hit.f == 0.0 || !step.exact) {
+            // The path closes where the ball does not: the hop is too short for this step.
+            self.halvings += 1;
+            self.counters.halvings += 1;
+        }
+    }
+
+    /// What counts as touching here.
+    pub(super) fn touch_tolerance(&self, travelled: f64) -> f64 {
+        let here = self.state.position.coords.amax().max(self.forces.ball.radius());
+        // Contact with a face is found to the rounding of its corners as well.
+        touch_distance(here + self.plan.farthest, travelled)
+    }
+
+    /// Puts the centre back onto the surface it touches, within the rounding bound of its position (R15: explicit, bounded, counted).
+    pub(super) fn correct(&mut self, contact: &Contact, tolerance: f64) {
+        if let Some(gap) = self.obstacles.gap(contact, &self.state.position)
+            && gap != 0.0
+            && gap.abs() <= tolerance
+        {
+            self.state.position -= contact.normal * gap;
+            self.counters.corrections += 1;
+        }
+    }
+
+    /// The rate of change of a contact's clearance on arrival: from the clearance itself where it was solved, else n.v.
+    fn rate(&self, step: &Step, hit: Hit, contact: &Contact, before: &[Contact], returns: &Returns) -> f64 {
+        let known =
+            before.iter().zip(returns).find(|(b, _)| b.surface == contact.surface && b.normal == contact.normal);
+        if let Some((b, known)) = known {
+            match known.entry {
+                _ if b.lasting => return 0.0,
+                Entry::At { f, rate } if step.exact && f == hit.f => return rate / step.seconds,
+                _ if hit.f == 0.0 => return b.rate,
+                _ => {}
+            }
+        }
+        match hit.rate {
+            Some(rate) if step.exact && contact.surface == hit.surface => rate / step.seconds,
+            _ => contact.rate,
+        }
+    }
+}

@@ -1,0 +1,337 @@
+//! Lasting contact: when bouncing ends, sliding from place to place, and rest.
+
+use super::{Settling, Walk};
+use crate::body::State;
+use crate::contacts::{Contact, Contacts, MAX_CONTACTS};
+use crate::effects::friction::ContactFriction;
+use crate::events::{EventKind, Motion};
+use crate::integrators::{Step, exact};
+use crate::observer::Observer;
+use crate::response::changed_rate;
+use crate::sliding::{Balance, Carrier, Slide, slide};
+use crate::tolerance::{PATIENCE, SLIDING_TOLERANCE, least_hop, rate_rounding};
+use carom_geometry::rounding::position_bound;
+use carom_geometry::sweep::{Bend, RegionBound};
+use nalgebra::Vector3;
+
+impl<O: Observer> Walk<'_, O> {
+    /// What the ball makes of its contacts: it flies on, goes on bouncing, or settles. Says whether something carries it.
+    pub(super) fn settle(&mut self) -> bool {
+        let sliding = self.motion == Motion::Sliding;
+        let a = self.forces.acceleration(&self.state, &mut self.counters);
+        let carriers = self.carriers();
+        let mut carrying = [false; MAX_CONTACTS];
+        let mut settling = None;
+        // A contact may press the ball into another that its weight alone would not press it into: asked again, until no other carries.
+        let mut free = a;
+        let mut more = true;
+        while std::mem::take(&mut more) {
+            for (i, carrier) in carriers.iter().enumerate() {
+                if carrying[i] {
+                    continue;
+                }
+                let contact = &carrier.contact;
+                let pressed = -contact.normal.dot(&free) - carrier.centripetal(&self.state.velocity);
+                carrying[i] = self.ends_bouncing(contact, pressed);
+                more |= carrying[i];
+                let c_r = self.plan.surfaces[contact.surface].material.restitution.coefficient();
+                if carrying[i] && contact.rate > 0.0 && c_r < 1.0 {
+                    // Around an edge the way along the surface is no flight: there the hops end at once.
+                    let flat = carrier.bend == Bend::Flat;
+                    let seconds = if flat { 2.0 * contact.rate / (pressed * (1.0 - c_r)) } else { 0.0 };
+                    settling = Some(Settling { seconds, closing: contact.rate, contact: i });
+                }
+            }
+            let held: Vec<Carrier> = carriers.iter().zip(&carrying).filter(|(_, c)| **c).map(|(c, _)| *c).collect();
+            free = Balance::of(&a, &held, &self.state).free;
+        }
+        if settling.is_some() && self.drives_into_others(&carrying) {
+            // What hops is not held down where that would press the ball into something else: it flies the hop.
+            settling = None;
+            for (contact, carrying) in self.contacts.iter().zip(&mut carrying) {
+                *carrying &= contact.rate <= 0.0;
+            }
+        }
+        let several = carrying.iter().filter(|c| **c).count() > 1;
+        if !carrying.contains(&true) {
+            self.set_flying(sliding);
+            return false;
+        }
+        for (contact, carrying) in self.contacts.iter_mut().zip(carrying) {
+            contact.lasting = carrying;
+            if carrying {
+                contact.rate = 0.0;
+            }
+        }
+        let before = self.state.velocity;
+        self.make_tangential();
+        for contact in self.contacts.iter_mut().filter(|c| !c.lasting) {
+            contact.rate = changed_rate(contact, &before, &self.state.velocity);
+        }
+        self.motion = Motion::Sliding;
+        self.halvings = 0;
+        match settling {
+            Some(settling) if !several => self.settling = Some(settling),
+            _ if !sliding => self.begin_sliding(),
+            _ => {}
+        }
+        true
+    }
+
+    /// Whether bouncing on `contact` has ended: it is pressed, and the next hop would be none (three of the four parts of
+    /// the rest test, for the normal speed; the fourth tells sliding from resting).
+    fn ends_bouncing(&mut self, contact: &Contact, pressed: f64) -> bool {
+        self.counters.rest += 1;
+        // What loses nothing bounces for ever. An elastic surface with friction loses in a corner, without end.
+        let material = &self.plan.surfaces[contact.surface].material;
+        let smooth = material.friction.in_contact() == ContactFriction::Sliding(0.0);
+        let loses = material.restitution.coefficient() < 1.0 || !smooth || self.standstill > PATIENCE;
+        let thresholds = self.plan.rest.at(pressed.max(0.0));
+        let still = self.state.velocity == Vector3::zeros();
+        if contact.rate == 0.0 {
+            return pressed > 0.0 || (still && pressed >= -thresholds.force);
+        }
+        let hop = contact.rate * contact.rate / (2.0 * pressed);
+        let resolved = self.integrator.timestep().map_or(0.0, |h| least_hop(pressed, h));
+        let hidden = hop <= position_bound(self.plan.farthest.max(self.state.position.coords.amax()));
+        pressed > 0.0 && (loses || hidden) && (contact.rate <= thresholds.speed || hop <= resolved)
+    }
+
+    /// The contacts as carriers.
+    fn carriers(&self) -> Vec<Carrier> {
+        self.contacts
+            .iter()
+            .map(|contact| Carrier {
+                contact: *contact,
+                bend: self.obstacles.bend(contact),
+                friction: self.plan.surfaces[contact.surface].material.friction.in_contact(),
+                radius: self.obstacles.radius_at(contact),
+            })
+            .collect()
+    }
+
+    /// Whether taking the ball along the contacts that carry would drive it into one that does not.
+    fn drives_into_others(&self, carrying: &[bool]) -> bool {
+        let contacts = || self.contacts.iter().zip(carrying);
+        let held: Vec<_> = contacts().filter(|(_, carrying)| **carrying).map(|(c, _)| c.normal).collect();
+        let v = along(&held, self.state.velocity);
+        let rounding = rate_rounding(self.state.velocity.norm());
+        contacts().any(|(c, carrying)| !carrying && c.normal.dot(&v) < -rounding)
+    }
+
+    /// Takes from the velocity what would leave or enter a lasting contact.
+    fn make_tangential(&mut self) {
+        let lasting: Vec<Vector3<f64>> = self.contacts.iter().filter(|c| c.lasting).map(|c| c.normal).collect();
+        self.state.velocity = along(&lasting, self.state.velocity);
+    }
+
+    fn set_flying(&mut self, was_sliding: bool) {
+        self.motion = Motion::Flying;
+        self.settling = None;
+        let left = self.contacts.iter().find(|c| c.lasting).or(self.contacts.first()).copied();
+        if was_sliding && let Some(contact) = left {
+            self.tell(EventKind::Leave, &contact, self.state.velocity);
+        }
+        for contact in &mut self.contacts {
+            contact.lasting = false;
+        }
+    }
+
+    /// Tells that sliding begins; whether it begins with rest, the next pass finds out.
+    fn begin_sliding(&mut self) {
+        if !self.try_to_rest()
+            && let Some(contact) = self.contacts.iter().find(|c| c.lasting).copied()
+        {
+            self.tell(EventKind::Slide, &contact, self.state.velocity);
+        }
+    }
+
+    /// The four-part rest test: slow, in contact, pressed, and held by friction. A ball that passes it rests.
+    fn try_to_rest(&mut self) -> bool {
+        self.counters.rest += 1;
+        let carriers: Vec<Carrier> = self.lasting_carriers();
+        let still = State { velocity: Vector3::zeros(), ..self.state };
+        let a = self.forces.acceleration(&still, &mut self.counters);
+        let balance = Balance::of(&a, &carriers, &still);
+        let Some((main, _)) = balance.loads.loads().max_by(|a, b| a.1.total_cmp(&b.1)).or(Some((0, 0.0))) else {
+            return false;
+        };
+        let Some(carrier) = carriers.get(main) else { return false };
+        let pressed = -carrier.contact.normal.dot(&a);
+        let slow = self.state.velocity.norm() <= self.plan.rest.at(pressed.max(0.0)).speed || balance.sticks;
+        if !(slow && balance.holds()) {
+            return false;
+        }
+        let contact = carrier.contact;
+        let velocity_in = std::mem::replace(&mut self.state.velocity, Vector3::zeros());
+        self.motion = Motion::Resting;
+        self.tell(EventKind::Rest, &contact, velocity_in);
+        true
+    }
+
+    fn lasting_carriers(&self) -> Vec<Carrier> {
+        self.carriers().into_iter().filter(|c| c.contact.lasting).collect()
+    }
+
+    /// One stretch of sliding: to a stop, over an edge, into another surface, or off.
+    pub(super) fn slide(&mut self) {
+        if self.settling.is_none() && self.try_to_rest() {
+            return;
+        }
+        let carriers = self.lasting_carriers();
+        let a = self.forces.acceleration(&self.state, &mut self.counters);
+        let balance = Balance::of(&a, &carriers, &self.state);
+        if balance.loads.count() == 0 && self.settling.is_none() {
+            self.set_flying(true);
+            return;
+        }
+        if self.drop_unloaded(&balance) {
+            return;
+        }
+        if self.settling.is_none() && self.turns_round(&balance) {
+            self.state.velocity = Vector3::zeros();
+            self.contacts.iter_mut().for_each(|c| c.rate = 0.0);
+        }
+        let remaining = self.clock.until(self.plan.duration);
+        let Slide { step, stops } = match self.settling {
+            None => {
+                let slider = &mut self.slider;
+                slide(slider, &self.forces, &self.state, &carriers, &balance, remaining, &mut self.counters)
+            }
+            // The hops are too low to see, and friction acts at their ends: a flight along the surface.
+            Some(settling) => {
+                self.counters.paths += 1;
+                let seconds = settling.seconds.min(remaining);
+                let step = exact::step(&self.state, balance.free, seconds);
+                Slide { step, stops: seconds == settling.seconds }
+            }
+        };
+        let motion = if self.settling.is_some() { Motion::Flying } else { Motion::Sliding };
+        let exit = self.exit(&step);
+        let returns = self.obstacles.returns(&step, &self.contacts, &mut self.counters);
+        let hit = self.obstacles.earliest(&step, &self.contacts, &returns, &mut self.counters);
+        let hit = hit.filter(|hit| exit.is_none_or(|(f, ..)| hit.f < f));
+        let to = hit.map(|hit| hit.f).or(exit.map(|(f, ..)| f)).unwrap_or(step.to);
+        let whole = hit.is_none() && exit.is_none() && !stops && step.time(step.to) >= remaining;
+        self.travel(&step, to, motion, whole.then_some(self.plan.duration));
+        if to > 0.0 {
+            self.leave_behind();
+        }
+        self.hold_to_surface();
+        match (hit, exit) {
+            (Some(hit), _) => {
+                // Friction at the end of a settling changes the velocity: the path no longer tells it.
+                let step = Step { exact: step.exact && self.settling.is_none(), ..step };
+                self.end_settling();
+                self.arrive(&step, hit, &returns);
+            }
+            (None, Some((_, contact, bound))) => {
+                self.end_settling();
+                self.cross(contact, &bound);
+            }
+            (None, None) if self.settling.is_some() => {
+                if stops {
+                    self.end_settling();
+                }
+            }
+            (None, None) if stops => self.state.velocity = Vector3::zeros(),
+            (None, None) => {}
+        }
+    }
+
+    /// Whether a ball that friction cannot hold is so slow that it stands, before it sets out the other way.
+    fn turns_round(&self, balance: &Balance) -> bool {
+        let v = self.state.velocity;
+        let load: f64 = balance.loads.loads().map(|(_, load)| load).sum();
+        balance.friction > 0.0 && balance.free.dot(&v) < 0.0 && v.norm() <= self.plan.rest.at(load).speed
+    }
+
+    /// Forgets what the ball touched where it was, but for what it moves along.
+    fn leave_behind(&mut self) {
+        self.contacts.retain(|c| c.lasting);
+        if let Some(settling) = &mut self.settling {
+            settling.contact = 0;
+        }
+    }
+
+    /// Lets go of contacts that no longer carry; says whether there were any.
+    fn drop_unloaded(&mut self, balance: &Balance) -> bool {
+        if self.settling.is_some() {
+            return false;
+        }
+        let mut loaded = [false; MAX_CONTACTS];
+        balance.loads.loads().for_each(|(i, _)| loaded[i] = true);
+        let mut dropped = false;
+        for (place, contact) in self.contacts.iter_mut().filter(|c| c.lasting).enumerate() {
+            if !loaded[place] {
+                contact.lasting = false;
+                dropped = true;
+            }
+        }
+        dropped
+    }
+
+    /// The impacts of the hops that were flown along the surface, all at once; then sliding begins.
+    fn end_settling(&mut self) {
+        if let Some(settling) = self.settling.take() {
+            let contact = self.contacts[settling.contact];
+            let material = &self.plan.surfaces[contact.surface].material;
+            let c_r = material.restitution.coefficient();
+            self.state.velocity = material.friction.slow_to_the_end(self.state.velocity, settling.closing, c_r);
+            self.begin_sliding();
+        }
+    }
+
+    /// Where the step first leaves the region of a lasting contact, and which of the lasting ones that is.
+    fn exit(&mut self, step: &Step) -> Option<(f64, usize, RegionBound)> {
+        let mut first: Option<(f64, usize, RegionBound)> = None;
+        for (i, contact) in self.contacts.iter().filter(|c| c.lasting).enumerate() {
+            if let Some((f, bound)) = self.obstacles.exit(step, contact, &mut self.counters)
+                && first.is_none_or(|(best, ..)| f < best)
+            {
+                first = Some((f, i, bound));
+            }
+        }
+        first
+    }
+
+    /// The neighbouring place takes over.
+    fn cross(&mut self, contact: usize, bound: &RegionBound) {
+        let Some(contact) = self.contacts.iter_mut().filter(|c| c.lasting).nth(contact) else { return };
+        let foot = self.obstacles.mesh(contact.surface).and_then(|m| m.foot(bound.next, &self.state.position));
+        if let Some((_, normal)) = foot {
+            contact.site = Some(bound.next);
+            contact.normal = normal;
+        }
+        if self.motion == Motion::Sliding {
+            self.make_tangential();
+        }
+    }
+
+    /// After moving along lasting contacts: the position on them, their normals where they are now, the velocity along them.
+    fn hold_to_surface(&mut self) {
+        let position = self.state.position;
+        for contact in self.contacts.iter_mut().filter(|c| c.lasting) {
+            let (Some(site), Some(mesh)) = (contact.site, self.obstacles.mesh(contact.surface)) else { continue };
+            if let Some((_, normal)) = mesh.foot(site, &position).filter(|_| mesh.bend(site) != Bend::Flat) {
+                contact.normal = normal;
+            }
+        }
+        let lasting: Contacts = self.contacts.iter().filter(|c| c.lasting).copied().collect();
+        for contact in &lasting {
+            let slack = SLIDING_TOLERANCE * self.obstacles.radius_at(contact);
+            self.correct(contact, self.touch_tolerance(0.0).max(slack));
+        }
+        self.make_tangential();
+    }
+}
+
+/// The part of `v` along all planes with these normals.
+fn along(normals: &[Vector3<f64>], v: Vector3<f64>) -> Vector3<f64> {
+    match normals {
+        [] => v,
+        [n] => v - n * n.dot(&v),
+        [a, b] => a.cross(b).try_normalize(0.0).map_or(v, |t| t * t.dot(&v)),
+        _ => Vector3::zeros(),
+    }
+}
