@@ -118,6 +118,7 @@ impl<'a> Tally<'a> {
             Ending::Completed => return,
             Ending::EventBudget => "event_budget",
             Ending::UnresolvedContact => "unresolved_contact",
+            Ending::Diverged => "diverged",
             _ => "other",
         };
         self.ended_early.push(EndedEarly { ball, time: outcome.time, ending });

@@ -22,6 +22,8 @@ pub enum EventKind {
     EventBudget,
     /// The simulation of the ball was ended: its contacts kept answering each other without time passing.
     UnresolvedContact,
+    /// The simulation of the ball was ended: its next step has no finite numbers.
+    Diverged,
 }
 
 /// One event of one ball at one surface. A simultaneous impact at several surfaces is one event for each, at one time and
@@ -67,6 +69,9 @@ pub enum Ending {
     EventBudget,
     /// Contacts kept answering each other without time passing.
     UnresolvedContact,
+    /// The next step has no finite numbers: the timestep is too long for the forces, or the motion left the range of f64. The state is
+    /// the last finite one.
+    Diverged,
 }
 
 /// A ball at the end of its simulation.

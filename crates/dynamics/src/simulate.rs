@@ -137,6 +137,15 @@ impl<O: Observer> Walk<'_, O> {
         }
     }
 
+    /// Whether `step` is none because a number in it is not finite; ends the simulation of the ball if so.
+    fn diverges(&mut self, step: &Step) -> bool {
+        let diverges = !step.is_finite();
+        if diverges {
+            self.give_up(Ending::Diverged, EventKind::Diverged);
+        }
+        diverges
+    }
+
     /// Rests to the end.
     fn rest(&mut self) {
         let end = self.plan.duration;

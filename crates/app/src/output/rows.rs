@@ -84,6 +84,7 @@ fn kind(kind: EventKind) -> &'static str {
         EventKind::Wake => "wake",
         EventKind::EventBudget => "event-budget",
         EventKind::UnresolvedContact => "unresolved-contact",
+        EventKind::Diverged => "diverged",
         _ => "other",
     }
 }

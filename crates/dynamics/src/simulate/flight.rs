@@ -22,6 +22,9 @@ impl<O: Observer> Walk<'_, O> {
         let rounding = rate_rounding(self.state.velocity.norm());
         let tangential = self.contacts.iter().any(|c| c.rate <= rounding);
         let step = self.integrator.step(&self.forces, &self.state, timestep, tangential, &mut self.counters);
+        if self.diverges(&step) {
+            return;
+        }
         let returns = self.obstacles.returns(&step, &self.contacts, &mut self.counters);
         let hit = self.obstacles.earliest(&step, &self.contacts, &returns, &mut self.counters);
         match hit {
