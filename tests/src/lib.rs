@@ -5,6 +5,7 @@ pub mod catalogue;
 pub mod data;
 pub mod exact;
 pub mod grid;
+pub mod hunt;
 pub mod nasty;
 pub mod obj;
 pub mod oracle;
