@@ -183,7 +183,7 @@ impl<'a> Checker<'a> {
             }
             // A settling ball flies along its surface.
             let bent = segment.step.velocity[1] != self.gravity * segment.step.seconds;
-            self.settled = segment.motion == Motion::Flying && bent && self.scene.drag.is_none();
+            self.settled = segment.motion == Motion::Flying && bent && segment.step.exact;
             if exact && segment.motion == Motion::Flying {
                 if !self.settled {
                     self.note(Flaw::Conservation, (e1 - e).abs(), slack, || format!("in segment {k}"));

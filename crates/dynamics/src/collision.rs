@@ -269,7 +269,10 @@ impl<'a> Obstacles<'a> {
         let mut contacts = Contacts::new();
         for c in all {
             let same = |kept: &Contact| {
-                let angle = merge_angle_squared(tolerance, self.radius_at(kept).min(self.radius_at(&c)));
+                // The normals of planes and faces do not depend on where rounding put the ball: two of them are two.
+                let exact = self.bend(kept) == Bend::Flat && self.bend(&c) == Bend::Flat;
+                let radius = if exact { 0.0 } else { self.radius_at(kept).min(self.radius_at(&c)) };
+                let angle = merge_angle_squared(tolerance, radius);
                 (kept.normal - c.normal).norm_squared() <= angle
             };
             if !contacts.is_full() && !contacts.iter().any(same) {
