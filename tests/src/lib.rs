@@ -3,4 +3,6 @@
 pub mod data;
 pub mod nasty;
 pub mod obj;
+pub mod oracle;
 pub mod sources;
+pub mod stage;

@@ -5,7 +5,7 @@ use crate::contacts::{Contact, Contacts, MAX_CONTACTS};
 use crate::counters::Counters;
 use crate::integrators::Step;
 use crate::plan::Plan;
-use crate::tolerance::merge_angle_squared;
+use crate::tolerance::{merge_angle_squared, rate_rounding};
 use arrayvec::ArrayVec;
 use carom_geometry::clearance::{Clearance, Entry};
 use carom_geometry::contact::{Hold, MovingBall};
@@ -91,10 +91,12 @@ impl<'a> Obstacles<'a> {
     pub fn new(plan: &'a Plan, radius: f64, state: &State, a: &Vector3<f64>) -> Self {
         let side = |plane: &carom_geometry::plane::Plane| {
             let n = plane.normal();
-            // A centre on the plane is on the side it moves to, or else on the side it is pressed from.
+            // A centre on the plane is on the side it moves to, or else, where it moves along the plane to rounding, on the side it
+            // is pressed from.
             plane.side_of(&state.position).unwrap_or_else(|| {
                 let heading = n.dot(&state.velocity);
-                let heading = if heading == 0.0 { -n.dot(a) } else { heading };
+                let along = heading.abs() <= rate_rounding(state.velocity.norm());
+                let heading = if along { -n.dot(a) } else { heading };
                 if heading < 0.0 { Side::Negative } else { Side::Positive }
             })
         };

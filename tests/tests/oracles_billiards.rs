@@ -1,0 +1,165 @@
+//! Billiards: a box, gravity wedges and thin wedges, each to its own conditioning.
+
+use carom_tests::oracle::{Table, U, Worst};
+use carom_tests::stage::{Run, Stage, smooth};
+use nalgebra::{Point3, Vector3};
+
+/// More impacts than this take a debug build too long.
+const FEASIBLE: f64 = 320_000.0;
+
+#[test]
+fn r12_a_ball_in_a_box_of_six_planes() {
+    let table = Table::read("box_billiard");
+    let mut places = Worst::of("place in the box");
+    let mut skipped = 0;
+    for group in table.groups(10) {
+        let [lx, ly, lz, r] = group[0].numbers(["Lx", "Ly", "Lz", "r"]);
+        let start = Point3::from(group[0].numbers(["x0", "y0", "z0"]));
+        let v0 = Vector3::from(group[0].numbers(["vx0", "vy0", "vz0"]));
+        let feasible: Vec<_> = group.iter().filter(|row| row.number("hits") <= FEASIBLE).collect();
+        skipped += group.len() - feasible.len();
+        let last = feasible.last().unwrap().number("t");
+        let run = Stage::new(last).room(smooth(1.0), [lx, ly, lz]).ball(start, v0, r).run();
+        let impacts = run.impacts();
+        for row in feasible {
+            let [t, hits] = row.numbers(["t", "hits"]);
+            assert_eq!(impacts.partition_point(|e| e.time <= t) as f64, hits, "hits until {t}");
+            // Elastic walls along the axes keep every speed to the bit.
+            assert_eq!(run.velocity_at(t), Vector3::from(row.numbers(["vx", "vy", "vz"])), "velocity at {t}");
+            // Each hit rounds the place and the time once: an ulp of the box and of its crossing.
+            let x = run.at(t);
+            for (axis, right) in row.numbers(["x", "y", "z"]).into_iter().enumerate() {
+                let bound = 2.0 * U * (hits + 1.0) * lx.max(ly).max(lz) + 2.0 * U * t * v0[axis].abs();
+                places.see(x[axis], right, bound, || format!("axis {axis}, t = {t}, {hits} hits"));
+            }
+        }
+    }
+    places.settle();
+    assert_eq!(skipped, 5, "rows beyond {FEASIBLE} hits");
+}
+
+/// A wedge x = +-tan(half angle) y with its apex at the origin, gravity along -y.
+fn gravity_wedge(duration: f64, g: f64, half_angle: f64, start: [f64; 4]) -> Run {
+    let (sin, cos) = half_angle.to_radians().sin_cos();
+    let [x, y, vx, vy] = start;
+    Stage::new(duration)
+        .gravity([0.0, -g, 0.0])
+        .plane("R", smooth(1.0), [0.0; 3], [-cos, sin, 0.0])
+        .plane("L", smooth(1.0), [0.0; 3], [cos, sin, 0.0])
+        .ball([x, y, 0.0], [vx, vy, 0.0], 0.0)
+        .run()
+}
+
+#[test]
+fn r12_a_right_angled_wedge_is_two_bouncers() {
+    let table = Table::read("wedge45_exact");
+    let (mut places, mut speeds) = (Worst::of("place in the wedge"), Worst::of("velocity in the wedge"));
+    let mut skipped = 0;
+    for group in table.groups(5) {
+        let [g, x0, y0, vx0, vy0] = group[0].numbers(["g", "x0", "y0", "vx0", "vy0"]);
+        let hits = |row: &carom_tests::oracle::Row| row.number("hits_left_wall") + row.number("hits_right_wall");
+        let feasible: Vec<_> = group.iter().filter(|row| hits(row) <= FEASIBLE).collect();
+        skipped += group.len() - feasible.len();
+        let last = feasible.last().unwrap().number("t");
+        let run = gravity_wedge(last, g, 45.0, [x0, y0, vx0, vy0]);
+        let impacts = run.impacts();
+        let speed = (vx0 * vx0 + vy0 * vy0 + 2.0 * g * y0).sqrt();
+        for row in feasible {
+            let t = row.number("t");
+            for (wall, column) in [(0, "hits_right_wall"), (1, "hits_left_wall")] {
+                let seen = impacts.iter().filter(|e| e.surface == wall && e.time <= t).count();
+                assert_eq!(seen as f64, row.number(column), "{column} until {t}");
+            }
+            // Each hit rounds the speed of the other bouncer, and so the length of all its hops to come: half a square.
+            let bound = U * (t * hits(row) / 2.0 + 16.0);
+            let (x, v) = (run.at(t), run.velocity_at(t));
+            for (axis, [place, velocity]) in [["x", "vx"], ["y", "vy"]].into_iter().enumerate() {
+                let at = || format!("axis {axis}, t = {t}");
+                places.see(x[axis], row.number(place), bound * speed, at);
+                speeds.see(v[axis], row.number(velocity), bound * g, at);
+            }
+        }
+    }
+    Worst::settle_all([places, speeds]);
+    assert_eq!(skipped, 6, "rows beyond {FEASIBLE} hits");
+}
+
+#[test]
+fn r12_gravity_wedges_as_far_as_f64_can_know() {
+    let table = Table::read("wedge_billiard");
+    let (mut times, mut places) = (Worst::of("time of the hit"), Worst::of("place of the hit"));
+    let mut speeds = Worst::of("velocity after the hit");
+    let mut unknowable = 0;
+    for group in table.groups(6) {
+        let [g, angle, x0, y0, vx0, vy0] = group[0].numbers(["g", "half_angle_deg", "x0", "y0", "vx0", "vy0"]);
+        // Until a millionth of the motion is left to compare.
+        let known: Vec<_> = group.iter().filter(|row| row.number("log10_error_growth") < 9.0).collect();
+        unknowable += group.len() - known.len();
+        let last = known.last().unwrap().number("t");
+        let impacts = gravity_wedge(last * (1.0 + 1e-6), g, angle, [x0, y0, vx0, vy0]).impacts();
+        let speed = (2.0 * g * y0).sqrt();
+        // Of all errors made on the way, the worst amplified counts.
+        let mut worst = 0.0f64;
+        for row in known {
+            let [hit, t, growth] = row.numbers(["hit", "t", "log10_error_growth"]);
+            worst = worst.max(growth);
+            let impact = &impacts[hit as usize - 1];
+            assert_eq!(["R", "L"][impact.surface], row.text("wall"), "half angle {angle}, hit {hit}");
+            let bound = 4.0 * U * hit * 10f64.powf(worst);
+            let at = || format!("half angle {angle}, hit {hit}, growth 1e{growth:.1}");
+            times.see(impact.time, t, bound * (1.0 + t), at);
+            for (axis, [place, velocity]) in [["x", "vx_after"], ["y", "vy_after"]].into_iter().enumerate() {
+                places.see(impact.position[axis], row.number(place), bound * y0, at);
+                speeds.see(impact.velocity[axis], row.number(velocity), bound * speed, at);
+            }
+        }
+    }
+    Worst::settle_all([times, places, speeds]);
+    println!("{unknowable} rows lie beyond what f64 can know");
+}
+
+/// The wedge between y = 0 (A) and y = x / m (B), and a point that comes in along -x.
+fn thin_wedge(duration: f64, m: f64, x0: f64, y0: f64, speed: f64) -> Run {
+    Stage::new(duration)
+        .plane("A", smooth(1.0), [0.0; 3], [0.0, 1.0, 0.0])
+        .plane("B", smooth(1.0), [0.0; 3], [1.0, -m, 0.0])
+        .ball([x0, y0, 0.0], [-speed, 0.0, 0.0], 0.0)
+        .run()
+}
+
+#[test]
+fn r12_a_thin_wedge_is_left_after_the_exact_number_of_hits() {
+    let (counts, hits) = (Table::read("thin_wedge_counts"), Table::read("thin_wedge_hits"));
+    let groups = hits.groups(5);
+    let (mut times, mut distances) = (Worst::of("time of the hit"), Worst::of("distance from the apex"));
+    let mut speeds = Worst::of("velocity after the hit");
+    let mut skipped = 0;
+    for (row, group) in counts.rows().zip(groups) {
+        let [m, x0, y0, speed, total, phi, last] =
+            row.numbers(["M", "x0", "y0", "speed", "hits_total", "phi", "t_last_hit"]);
+        if total > FEASIBLE {
+            skipped += 1;
+            continue;
+        }
+        let impacts = thin_wedge(4.0 * last, m, x0, y0, speed).impacts();
+        assert_eq!(impacts.len() as f64, total, "M = {m}");
+        for row in group {
+            assert_eq!(row.number("M"), m);
+            let [hit, t, distance, vx, vy] =
+                row.numbers(["hit", "t_hit", "distance_from_apex", "vx_after", "vy_after"]);
+            let impact = &impacts[hit as usize - 1];
+            assert_eq!(["A", "B"][impact.surface], row.text("wall"), "M = {m}, hit {hit}");
+            // Unfolded, the point moves straight past the apex at distance y0, and the hit is where it crosses the line at
+            // angle hit * phi. Each hit turns the motion by a few u, and the line crosses it at that angle.
+            let turned = 4.0 * U * (hit + 1.0);
+            let crossing = y0 / (hit * phi).sin().powi(2);
+            let at = || format!("M = {m}, hit {hit}");
+            times.see(impact.time, t, turned * crossing / speed + 4.0 * U * t, at);
+            distances.see(impact.position.coords.norm(), distance, turned * crossing + 4.0 * U * distance, at);
+            speeds.see(impact.velocity.x, vx, turned * speed, at);
+            speeds.see(impact.velocity.y, vy, turned * speed, at);
+        }
+    }
+    Worst::settle_all([times, distances, speeds]);
+    assert_eq!(skipped, 0, "wedges with more than {FEASIBLE} hits");
+}
