@@ -43,6 +43,7 @@ pub fn simulate(plan: &Plan, ball: &Ball, observer: &mut impl Observer) -> Outco
         settling: None,
         slider: Adaptive::new(SLIDING_TOLERANCE),
         standstill: 0,
+        answered: Contacts::new(),
         halvings: 0,
         events: 0,
         ending: None,
@@ -91,6 +92,8 @@ struct Walk<'a, O> {
     slider: Adaptive,
     /// Answers in a row that took no time.
     standstill: u32,
+    /// What has been touched since time last passed.
+    answered: Contacts,
     /// How often the timestep is halved because the path closes where the ball does not.
     halvings: u32,
     events: u64,

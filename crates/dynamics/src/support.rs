@@ -55,7 +55,7 @@ pub fn project_offset(w: &Vector3<f64>, normals: &[Vector3<f64>], allowed: impl 
             let c = normals[i].dot(&normals[j]);
             let Some(inverse) = Matrix2::new(1.0, c, c, 1.0).try_inverse() else { continue };
             let load = inverse * Vector2::new(lack(i), lack(j));
-            let v = w + normals[i] * load.x + normals[j] * load.y;
+            let v = in_groove(w, [&normals[i], &normals[j]], [allowed(i), allowed(j)]);
             if load.min() >= 0.0 && free(&v) {
                 return Projection { velocity: v, pushing: [(i, load.x), (j, load.y), (0, 0.0)], count: 2 };
             }
@@ -76,6 +76,16 @@ pub fn project_offset(w: &Vector3<f64>, normals: &[Vector3<f64>], allowed: impl 
     }
     // Normals so nearly dependent that no subset solves: nothing moves.
     Projection { velocity: Vector3::zeros(), ..none }
+}
+
+/// The vector with n_i.v = -`allowed[i]` for both `normals` that is `w` along their groove.
+///
+/// Put together in the directions of the groove: `w` plus the loads would leave in v the rounding of the loads, which in an acute groove
+/// are much larger than w.
+fn in_groove(w: &Vector3<f64>, normals: [&Vector3<f64>; 2], allowed: [f64; 2]) -> Vector3<f64> {
+    let along = normals[0].cross(normals[1]);
+    let v = along * along.dot(w) - normals[1].cross(&along) * allowed[0] - along.cross(normals[0]) * allowed[1];
+    v / along.norm_squared()
 }
 
 #[cfg(test)]

@@ -111,6 +111,10 @@ pub const FLIGHT_TOLERANCE: f64 = 1.0e-9;
 /// The least tolerance the adaptive pair can be asked for: below it the error estimate is rounding.
 pub const LEAST_TOLERANCE: f64 = 1.0e-15;
 
+/// Contacts answered without time passing before they are taken to answer each other for ever, so that restitution has lost all that it can
+/// lose. With fewer, what is left of the velocity might still be seen; the run would be ended at [`MAX_STANDSTILL`].
+pub const COLLAPSE_AFTER: u32 = 128;
+
 /// Contacts answered without time passing before the ball's simulation is ended as unresolved.
 pub const MAX_STANDSTILL: u32 = 256;
 

@@ -2,12 +2,12 @@
 
 use super::Walk;
 use crate::collision::{Hit, Returns};
-use crate::contacts::Contact;
+use crate::contacts::{Contact, Contacts};
 use crate::events::{EventKind, Motion};
 use crate::integrators::Step;
 use crate::observer::Observer;
-use crate::response::respond;
-use crate::tolerance::touch_distance;
+use crate::response::{collapse, respond};
+use crate::tolerance::{COLLAPSE_AFTER, touch_distance};
 use carom_geometry::clearance::Entry;
 
 impl<O: Observer> Walk<'_, O> {
@@ -46,6 +46,7 @@ impl<O: Observer> Walk<'_, O> {
             self.correct(contact, tolerance);
             contact.rate = self.rate(step, hit, contact, &before, returns);
         }
+        let collapses = self.collapses(&mut contacts);
         let carried = |c: &Contact| before.iter().any(|b| b.lasting && b.surface == c.surface && b.site == c.site);
         if let Some(contact) = contacts.iter().find(|c| c.rate < 0.0)
             && step.exact
@@ -58,7 +59,11 @@ impl<O: Observer> Walk<'_, O> {
         if closing.contains(&true) {
             let materials: Vec<_> = contacts.iter().map(|c| self.plan.surfaces[c.surface].material).collect();
             let velocity_in = self.state.velocity;
-            self.state.velocity = respond(velocity_in, &mut contacts, &materials, &mut self.counters);
+            self.state.velocity = if collapses {
+                collapse(velocity_in, &mut contacts)
+            } else {
+                respond(velocity_in, &mut contacts, &materials, &mut self.counters)
+            };
             self.counters.impacts += 1;
             self.halvings = 0;
             for (contact, _) in contacts.iter().zip(&closing).filter(|(_, closing)| **closing) {
@@ -76,6 +81,31 @@ impl<O: Observer> Walk<'_, O> {
             self.halvings += 1;
             self.counters.halvings += 1;
         }
+    }
+
+    /// Whether contacts that lose energy have answered each other without time passing for so long that there is no end to it; then
+    /// `contacts` are all that took part.
+    fn collapses(&mut self, contacts: &mut Contacts) -> bool {
+        if self.standstill == 0 {
+            self.answered.clear();
+        }
+        let place = |c: &Contact| (c.surface, c.site);
+        for c in contacts.iter() {
+            if !self.answered.is_full() && self.answered.iter().all(|a| place(a) != place(c)) {
+                self.answered.push(*c);
+            }
+        }
+        let loses = |c: &Contact| self.plan.surfaces[c.surface].material.restitution.coefficient() < 1.0;
+        if self.standstill < COLLAPSE_AFTER || !self.answered.iter().any(loses) {
+            return false;
+        }
+        for a in &self.answered {
+            if !contacts.is_full() && contacts.iter().all(|c| place(a) != place(c)) {
+                contacts.push(Contact { rate: a.normal.dot(&self.state.velocity), lasting: false, ..*a });
+            }
+        }
+        contacts.sort_by_key(|c| (self.plan.surfaces[c.surface].rank, c.site));
+        true
     }
 
     /// What counts as touching here.
