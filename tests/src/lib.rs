@@ -1,5 +1,6 @@
 //! What the cross-crate tests share.
 
+pub mod catalogue;
 pub mod data;
 pub mod nasty;
 pub mod obj;

@@ -41,9 +41,11 @@ fn respond_to_one(
     let hit = contacts.iter().position(|c| c.rate < 0.0)?;
     let (n, closing) = (contacts[hit].normal, -contacts[hit].rate);
     let c_r = materials[hit].restitution.coefficient();
-    let v_t = v - n * n.dot(&v);
+    // A rounded unit normal is off by the same u at each of a million bounces: divided by its square, it is not.
+    let square = n.norm_squared();
+    let v_t = v - n * (n.dot(&v) / square);
     let rebound = materials[hit].restitution.rebound(closing);
-    let after = slowed(&materials[hit].friction, v_t, closing, c_r, counters) + n * rebound;
+    let after = slowed(&materials[hit].friction, v_t, closing, c_r, counters) + n * (rebound / square);
     let rates = |i: usize, c: &Contact| if i == hit { rebound } else { changed_rate(c, &v, &after) };
     if contacts.iter().enumerate().any(|(i, c)| rates(i, c) < 0.0) {
         return None;

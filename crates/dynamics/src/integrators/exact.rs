@@ -13,7 +13,8 @@ pub fn step(state: &State, a: Vector3<f64>, remaining: f64) -> Step {
     let h = next_power_of_two(remaining);
     let zero = Vector3::zeros();
     Step {
-        path: Path::parabola(state.position, state.velocity * h, a * (0.5 * h * h)),
+        // Not a (h h / 2): h^2 may be out of range where nothing accelerates.
+        path: Path::parabola(state.position, state.velocity * h, (a * h) * (0.5 * h)),
         velocity: [state.velocity, a * h, zero, zero, zero],
         seconds: h,
         to: remaining / h,
