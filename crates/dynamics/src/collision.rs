@@ -5,7 +5,7 @@ use crate::contacts::{Contact, Contacts, MAX_CONTACTS};
 use crate::counters::Counters;
 use crate::integrators::Step;
 use crate::plan::Plan;
-use crate::tolerance::{merge_angle_squared, rate_rounding};
+use crate::tolerance::{merge_angle_squared, rate_rounding, touch_distance};
 use arrayvec::ArrayVec;
 use carom_geometry::clearance::{Clearance, Entry};
 use carom_geometry::contact::{Hold, MovingBall};
@@ -111,30 +111,41 @@ impl<'a> Obstacles<'a> {
 
     /// When the path of `step` returns to each of `contacts`; never to a lasting one, along which it moves.
     pub fn returns(&self, step: &Step, contacts: &[Contact], counters: &mut Counters) -> Returns {
+        let slack = touch_distance(step.path.start().coords.amax().max(self.radius), 0.0);
         contacts
             .iter()
             .map(|contact| {
-                let normal = contact.normal;
+                let hold = |until| Hold { normal: contact.normal, point: self.anchor(contact), slack, until };
                 if contact.lasting {
-                    let hold = Hold { normal, until: f64::INFINITY };
-                    return Return { hold, entry: Entry::Never, free: self.free(contact, f64::INFINITY) };
+                    let until = f64::INFINITY;
+                    return Return { hold: hold(until), entry: Entry::Never, free: self.free(contact, until) };
                 }
                 counters.clearances += 1;
                 let entry = leaving(step, contact).first_entry(0.0, step.to);
                 let until = entry.f().unwrap_or(f64::INFINITY);
-                let free = match self.bend(contact) {
-                    bend if bend != Bend::Flat && contact.rate == 0.0 => {
-                        let exit = self.exit(step, contact, counters).map_or(f64::INFINITY, |(f, _)| f);
-                        self.free(contact, leaves_until(step, bend, self.radius_at(contact)).min(exit))
-                    }
-                    _ => None,
-                };
-                Return { hold: Hold { normal, until }, entry, free }
+                let curved = self.bend(contact) != Bend::Flat && contact.rate == 0.0;
+                let free = if curved { self.leaves_until(step, contact, counters) } else { until };
+                Return { hold: hold(until), entry, free: self.free(contact, free) }
             })
             .collect()
     }
 
-    /// The faces at an edge or vertex, with the f until which the bounds of its region watch over them.
+    /// Until when a ball that leaves an edge or vertex tangentially touches none of the faces there: until it comes back to it, or
+    /// enters the region of one of them.
+    fn leaves_until(&self, step: &Step, contact: &Contact, counters: &mut Counters) -> f64 {
+        let exit = self.exit(step, contact, counters).map_or(f64::INFINITY, |(f, _)| f);
+        leaves_until(step, self.bend(contact), self.radius_at(contact)).min(exit)
+    }
+
+    /// A point of what is touched.
+    fn anchor(&self, contact: &Contact) -> Point3<f64> {
+        match (contact.site, self.mesh(contact.surface)) {
+            (Some(site), Some(mesh)) => mesh.anchor(site),
+            _ => self.plan.planes.iter().find(|(s, _)| *s == contact.surface).map_or(Point3::origin(), |p| p.1.point()),
+        }
+    }
+
+    /// The faces at what is touched, with the f until which the ball is free of them.
     fn free(&self, contact: &Contact, until: f64) -> Option<(usize, Vec<u32>, f64)> {
         Some((contact.surface, self.mesh(contact.surface)?.faces_at(contact.site?), until))
     }

@@ -18,10 +18,24 @@ use nalgebra::{Point3, Vector3};
 /// and its neighbours raise no false alarm from rounding.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hold {
-    /// Unit normal towards the ball; the plane touches the ball at start - radius * normal.
+    /// Unit normal towards the ball.
     pub normal: Vector3<f64>,
+    /// A point of the plane.
+    pub point: Point3<f64>,
+    /// How far the ball's position, and so the plane, may be off by rounding.
+    pub slack: f64,
     /// The f at which the path returns to the plane, infinite if never.
     pub until: f64,
+}
+
+impl Hold {
+    /// Whether the triangle is behind the plane, as far as that can be told.
+    fn hides(&self, triangle: &[Point3<f64>; 3]) -> bool {
+        triangle.iter().all(|v| {
+            let d = v - self.point;
+            self.normal.dot(&d) <= self.slack.max(contact_bound(d.amax()))
+        })
+    }
 }
 
 /// A moving ball: its path, its radius, and what it is known to touch at the start.
@@ -62,8 +76,8 @@ pub fn first_contact(ball: &MovingBall, triangle: &[Point3<f64>; 3], from: f64, 
 
     let mut f = from;
     for hold in ball.holds {
-        if farthest_along(&corners, &hold.normal) + ball.radius <= bound_at(0.0) {
-            f = hold.until.max(f);
+        if hold.until > f && hold.hides(triangle) {
+            f = hold.until;
         }
     }
     for _ in 0..MAX_ROUNDS {

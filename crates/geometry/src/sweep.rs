@@ -304,6 +304,15 @@ impl Mesh {
         }
     }
 
+    /// A point of `site`.
+    pub fn anchor(&self, site: Site) -> Point3<f64> {
+        match site {
+            Site::Face(face) => self.triangle(face)[0],
+            Site::Edge { face, edge } => self.triangle(face)[edge as usize],
+            Site::Vertex { vertex, .. } => self.vertices()[vertex as usize],
+        }
+    }
+
     /// Where `site` is nearest to `centre`, taken as an infinite plane or line, and the unit normal from there to `centre`.
     /// None where the centre lies on it.
     pub fn foot(&self, site: Site, centre: &Point3<f64>) -> Option<(Point3<f64>, Vector3<f64>)> {
