@@ -22,7 +22,7 @@ use crate::integrators::adaptive::Adaptive;
 use crate::integrators::{Integrator, Step};
 use crate::observer::{Observer, Segment};
 use crate::plan::Plan;
-use crate::tolerance::{EVENT_BUDGET, MAX_STANDSTILL, SLIDING_TOLERANCE};
+use crate::tolerance::{EVENT_BUDGET, MAX_STANDSTILL, SLIDING_TOLERANCE, STEP_BUDGET};
 use nalgebra::Vector3;
 
 /// Simulates one ball of `plan` to the end and shows it to `observer`.
@@ -55,6 +55,9 @@ pub fn simulate(plan: &Plan, ball: &Ball, observer: &mut impl Observer) -> Outco
             Motion::Flying => walk.fly(),
             Motion::Sliding => walk.slide(),
             Motion::Resting => walk.rest(),
+        }
+        if walk.counters.paths >= STEP_BUDGET {
+            walk.ending = walk.ending.or(Some(Ending::StepBudget));
         }
     }
     Outcome {
@@ -126,6 +129,9 @@ impl<O: Observer> Walk<'_, O> {
             self.observer.segment(&Segment { time, end, step: *step, to, motion });
         }
         self.state = step.at(to);
+        if !(self.state.position.coords.sum() + self.state.velocity.sum()).is_finite() {
+            self.ending = Some(Ending::OutOfRange);
+        }
         if end > time {
             self.standstill = 0;
             return;

@@ -118,5 +118,8 @@ pub const COLLAPSE_AFTER: u32 = 128;
 /// Contacts answered without time passing before the ball's simulation is ended as unresolved.
 pub const MAX_STANDSTILL: u32 = 256;
 
+/// Steps of one ball before its simulation is ended; a fixed timestep that needs more is refused. They take hours.
+pub const STEP_BUDGET: u64 = 10_000_000_000;
+
 /// Events of one ball before its simulation is ended: a ball that bounces for ever stops here.
 pub const EVENT_BUDGET: u64 = 10_000_000;

@@ -3,11 +3,11 @@
 use super::Walk;
 use crate::collision::{Hit, Returns};
 use crate::contacts::{Contact, Contacts};
-use crate::events::{EventKind, Motion};
+use crate::events::{Ending, EventKind, Motion};
 use crate::integrators::Step;
 use crate::observer::Observer;
 use crate::response::{collapse, respond};
-use crate::tolerance::{COLLAPSE_AFTER, touch_distance};
+use crate::tolerance::{COLLAPSE_AFTER, rate_rounding, touch_distance};
 use carom_geometry::clearance::Entry;
 
 impl<O: Observer> Walk<'_, O> {
@@ -20,6 +20,10 @@ impl<O: Observer> Walk<'_, O> {
             timestep *= 0.5;
         }
         let step = self.integrator.step(&self.forces, &self.state, timestep, &mut self.counters);
+        if self.is_unstable(&step) {
+            self.ending = Some(Ending::UnstableStep);
+            return;
+        }
         let returns = self.obstacles.returns(&step, &self.contacts, &mut self.counters);
         let hit = self.obstacles.earliest(&step, &self.contacts, &returns, &mut self.counters);
         match hit {
@@ -34,6 +38,17 @@ impl<O: Observer> Walk<'_, O> {
                 self.arrive(&step, hit, &returns);
             }
         }
+    }
+
+    /// Whether a step of fixed length leaves the ball faster in the air than it can be: resistance takes from the speed v - w, and what does not
+    /// change adds |a| h at most. (Euler's methods are stable up to k h / m = 2 with linear drag, Runge and Kutta's up to 2.785.)
+    fn is_unstable(&self, step: &Step) -> bool {
+        let [flow] = self.forces.flows else { return false };
+        let Some(calm) = flow.calms_to().filter(|_| self.integrator.timestep().is_some()) else { return false };
+        let before = (self.state.velocity - calm).norm() + self.forces.constant.norm() * step.time(step.to);
+        let after = (step.end().velocity - calm).norm();
+        // What is not a number is not stable either.
+        !(after <= before + rate_rounding(before))
     }
 
     /// At a collision: what is touched, how fast, and the answer.

@@ -23,8 +23,9 @@ impl<O: Observer> Walk<'_, O> {
             let contact = &carrier.contact;
             let pressed = -contact.normal.dot(&a) - carrier.centripetal(&self.state.velocity);
             carrying[i] = self.ends_bouncing(contact, pressed);
-            if carrying[i] && contact.rate > 0.0 {
-                let c_r = self.plan.surfaces[contact.surface].material.restitution.coefficient();
+            let c_r = self.plan.surfaces[contact.surface].material.restitution.coefficient();
+            // The air ends the hops at c_r = 1, not in a time that has a formula.
+            if carrying[i] && contact.rate > 0.0 && c_r < 1.0 {
                 let seconds = 2.0 * contact.rate / (pressed * (1.0 - c_r));
                 settling = Some(Settling { seconds, closing: contact.rate, contact: i });
             }
@@ -63,7 +64,9 @@ impl<O: Observer> Walk<'_, O> {
         }
         let hop = contact.rate * contact.rate / (2.0 * pressed);
         let resolved = self.integrator.timestep().map_or(0.0, |h| least_hop(pressed, h));
-        pressed > 0.0 && c_r < 1.0 && (contact.rate <= thresholds.speed || hop <= resolved)
+        // What loses nothing bounces for ever: neither at impacts nor on the way.
+        let loses = c_r < 1.0 || !self.forces.are_constant();
+        pressed > 0.0 && loses && (contact.rate <= thresholds.speed || hop <= resolved)
     }
 
     /// The contacts as carriers.
