@@ -1,9 +1,14 @@
 //! What the cross-crate tests share.
 
 pub mod catalogue;
+pub mod checker;
 pub mod data;
+pub mod exact;
+pub mod grid;
 pub mod nasty;
 pub mod obj;
 pub mod oracle;
+pub mod random;
 pub mod sources;
 pub mod stage;
+pub mod world;

@@ -7,10 +7,21 @@ fn every_hard_case_holds() {
     let only = std::env::var("CASE").ok();
     let mut broken = Vec::new();
     for case in catalogue::all() {
-        if only.as_ref().is_some_and(|o| !case.id.eq(o)) { continue; }
+        if only.as_ref().is_some_and(|o| !case.id.eq(o)) {
+            continue;
+        }
         let start = std::time::Instant::now();
         let figure = (case.run)();
-        println!("{} | {} | {} | {} | {} | {:.2?} {}", case.id, case.title, case.elsewhere, figure.text, case.bound, start.elapsed(), if figure.holds {"ok"} else {"BROKEN"});
+        println!(
+            "{} | {} | {} | {} | {} | {:.2?} {}",
+            case.id,
+            case.title,
+            case.elsewhere,
+            figure.text,
+            case.bound,
+            start.elapsed(),
+            if figure.holds { "ok" } else { "BROKEN" }
+        );
         if !figure.holds {
             broken.push(format!("{} {}: {}", case.id, case.title, figure.text));
         }

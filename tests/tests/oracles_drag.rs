@@ -151,9 +151,8 @@ fn r18_balls_rebound_as_their_rules_say() {
             [("rebound_lo", thick, "e_lo_vac", "e_lo_drag"), ("rebound_hi", thin, "e_hi_vac", "e_hi_drag")]
         {
             let rebound = row.number(reading) - if at_top { diameter } else { 0.0 };
-            let fall = |e: f64| {
-                Stage::new(4.0).down(g).floor(smooth(e)).thing([0.0, 0.0, drop + r], [0.0; 3], r, Some(m))
-            };
+            let fall =
+                |e: f64| Stage::new(4.0).down(g).floor(smooth(e)).thing([0.0, 0.0, drop + r], [0.0; 3], r, Some(m));
             let place = || format!("{}, {reading}", row.text("ball"));
             for (worst, stage) in [
                 (&mut vacuum, fall(row.number(e_vacuum))),

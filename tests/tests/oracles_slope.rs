@@ -31,10 +31,11 @@ fn r12_bounces_down_a_slope() {
         let [g, h, angle, e] = group[0].numbers(["g", "h_drop", "slope_deg", "e"]);
         let slope = Slope::of_degrees(angle);
         let last = group[group.len() - 1].number("t_since_first_impact");
-        let stage = Stage::new(2.0 * last + 2.0)
-            .down(g)
-            .plane("slope", smooth(e), [0.0; 3], slope.normal)
-            .ball([0.0, 0.0, h], [0.0; 3], 0.0);
+        let stage = Stage::new(2.0 * last + 2.0).down(g).plane("slope", smooth(e), [0.0; 3], slope.normal).ball(
+            [0.0, 0.0, h],
+            [0.0; 3],
+            0.0,
+        );
         let impacts = stage.rest_length(1e-60).run().impacts();
         assert!(impacts.len() > group.len());
         for row in &group {
@@ -62,8 +63,7 @@ fn r34_bouncing_down_a_smooth_slope_ends_in_sliding() {
     let mut speeds = Worst::of("speed of sliding then");
     for row in table.rows() {
         let [g, h, angle, e] = row.numbers(["g", "h_drop", "slope_deg", "e"]);
-        let [t, distance, speed] =
-            row.numbers(["t_bouncing_ends", "distance_bouncing_ends", "slide_speed_then"]);
+        let [t, distance, speed] = row.numbers(["t_bouncing_ends", "distance_bouncing_ends", "slide_speed_then"]);
         let slope = Slope::of_degrees(angle);
         let run = Stage::new(2.0 * t + 2.0)
             .down(g)
@@ -93,8 +93,7 @@ fn r20_sliding_straight_down_and_up_a_slope() {
     let mut returns = Worst::of("return to the start");
     for row in table.rows() {
         let [g, angle, mu, v0] = row.numbers(["g", "slope_deg", "mu", "v0"]);
-        let [t, distance, speed_back] =
-            row.numbers(["t_stop_or_turn", "distance", "return_speed_at_start_0_if_stuck"]);
+        let [t, distance, speed_back] = row.numbers(["t_stop_or_turn", "distance", "return_speed_at_start_0_if_stuck"]);
         let slope = Slope::of_degrees(angle);
         let heading = if row.text("dir") == "up" { -slope.down } else { slope.down };
         let run = Stage::new(4.0 * t + 4.0)
@@ -142,8 +141,7 @@ fn r20_sliding_across_a_slope_turns_downhill() {
             .run();
         let place = |t: f64| format!("slope {angle}, mu = {mu}, psi0 = {from_downhill}, t = {t}");
         for row in &group {
-            let [t, down, across, v_down, v_across] =
-                row.numbers(["t", "s_down", "q_across", "v_down", "v_across"]);
+            let [t, down, across, v_down, v_across] = row.numbers(["t", "s_down", "q_across", "v_down", "v_across"]);
             let (x, v) = (run.at(t).coords, run.velocity_at(t));
             let scale = down.hypot(across);
             places.see(x.dot(&slope.down), down, 1e-9 * scale, || place(t));

@@ -250,7 +250,7 @@ impl<'a> Obstacles<'a> {
         }
         for (surface, mesh) in &self.plan.meshes {
             let mut work = Work::default();
-            for touch in mesh.touches(position, self.mesh_radius, tolerance, &mut work) {
+            for touch in mesh.touches(position, velocity, self.mesh_radius, tolerance, &mut work) {
                 all.push(contact(*surface, Some(touch.site), touch.normal));
             }
             counters.add(&work);

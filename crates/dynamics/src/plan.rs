@@ -29,6 +29,8 @@ pub struct Plan {
     pub(crate) rest: RestThresholds,
     pub(crate) method: Method,
     pub(crate) point_radius: f64,
+    /// The largest |coordinate| of the scene, in m.
+    pub(crate) farthest: f64,
 }
 
 /// What the loop needs to know of a surface whatever its shape.
@@ -88,6 +90,7 @@ impl Plan {
             rest: scene.rest.unwrap_or(RestThresholds::Length(default_rest_length(size.extent, size.farthest))),
             method,
             point_radius: point_radius(size.farthest),
+            farthest: size.farthest,
         })
     }
 

@@ -45,7 +45,15 @@ fn respond_to_one(
     let square = n.norm_squared();
     let v_t = v - n * (n.dot(&v) / square);
     let rebound = materials[hit].restitution.rebound(closing);
-    let after = slowed(&materials[hit].friction, v_t, closing, c_r, counters) + n * (rebound / square);
+    let friction = &materials[hit].friction;
+    let mut after = slowed(friction, v_t, closing, c_r, counters) + n * (rebound / square);
+    // Rounding must not gain energy; nor lose it where nothing does.
+    // In units of the largest component: squares of small speeds vanish.
+    let unit = v.amax();
+    let (had, has) = ((v / unit).norm_squared(), (after / unit).norm_squared());
+    if has > had || (c_r == 1.0 && *friction == Friction::None) {
+        after *= (had / has).sqrt();
+    }
     let rates = |i: usize, c: &Contact| if i == hit { rebound } else { changed_rate(c, &v, &after) };
     if contacts.iter().enumerate().any(|(i, c)| rates(i, c) < 0.0) {
         return None;
@@ -82,7 +90,8 @@ fn respond_to_all(
             after = slowed(&materials[i].friction, after, impulse, c_r, counters);
         }
         if bounces {
-            let lost = |i: usize| projection.loads().any(|(j, _)| i != j && collapse_in_between(i, j, contacts, materials));
+            let lost =
+                |i: usize| projection.loads().any(|(j, _)| i != j && collapse_in_between(i, j, contacts, materials));
             for (i, impulse) in projection.loads().filter(|(i, _)| !lost(*i)) {
                 counters.restitution += 1;
                 after += contacts[i].normal * materials[i].restitution.rebound(impulse);

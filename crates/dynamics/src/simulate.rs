@@ -22,7 +22,7 @@ use crate::integrators::adaptive::Adaptive;
 use crate::integrators::{Integrator, Step};
 use crate::observer::{Observer, Segment};
 use crate::plan::Plan;
-use crate::tolerance::{EVENT_BUDGET, MAX_STANDSTILL, SLIDING_TOLERANCE, STEP_BUDGET};
+use crate::tolerance::{EVENT_BUDGET, MAX_STANDSTILL, SLIDING_TOLERANCE, STEP_BUDGET, time_resolution};
 use nalgebra::Vector3;
 
 /// Simulates one ball of `plan` to the end and shows it to `observer`.
@@ -44,6 +44,7 @@ pub fn simulate(plan: &Plan, ball: &Ball, observer: &mut impl Observer) -> Outco
         slider: Adaptive::new(SLIDING_TOLERANCE),
         standstill: 0,
         answered: Contacts::new(),
+        moved: 0.0,
         halvings: 0,
         events: 0,
         ending: None,
@@ -93,10 +94,12 @@ struct Walk<'a, O> {
     settling: Option<Settling>,
     /// Integrates what slides on no straight line.
     slider: Adaptive,
-    /// Answers in a row that took no time.
+    /// Answers in a row that took no time to speak of.
     standstill: u32,
     /// What has been touched since time last passed.
     answered: Contacts,
+    /// Since when, in s.
+    moved: f64,
     /// How often the timestep is halved because the path closes where the ball does not.
     halvings: u32,
     events: u64,
@@ -132,8 +135,9 @@ impl<O: Observer> Walk<'_, O> {
         if !(self.state.position.coords.sum() + self.state.velocity.sum()).is_finite() {
             self.ending = Some(Ending::OutOfRange);
         }
-        if end > time {
+        if end - self.moved > time_resolution(end) {
             self.standstill = 0;
+            self.moved = end;
             return;
         }
         self.standstill += 1;

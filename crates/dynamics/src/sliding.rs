@@ -135,10 +135,11 @@ pub fn slide(
     Slide { step, stops: false }
 }
 
-/// On a curve, the time in which the ball moves by no more than a sixteenth of the radius.
+/// On a curve, the time in which the ball moves across it by no more than a sixteenth of the radius.
 fn longest_step(carrier: &Carrier, state: &State, a: &Vector3<f64>) -> f64 {
+    let across = |v: &Vector3<f64>| carrier.bend.across(v).norm();
     match carrier.bend {
         Bend::Flat => f64::INFINITY,
-        _ => carrier.radius / (16.0 * (state.velocity.norm() + (a.norm() * carrier.radius).sqrt())),
+        _ => carrier.radius / (16.0 * (across(&state.velocity) + (across(a) * carrier.radius).sqrt())),
     }
 }

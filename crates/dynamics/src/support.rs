@@ -7,6 +7,9 @@
 use crate::tolerance::rate_rounding;
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 
+/// Solutions of a small system, each for what the last one left: normals that are nearly one lose digits in its determinant.
+const REFINEMENTS: usize = 3;
+
 /// The nearest allowed vector, and what each contact adds to reach it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Projection {
@@ -35,47 +38,69 @@ pub fn project(w: &Vector3<f64>, normals: &[Vector3<f64>]) -> Projection {
 
 /// The vector nearest to `w` with n_i.w >= -`allowed(i)`: a contact that curves away lets the ball accelerate towards it.
 pub fn project_offset(w: &Vector3<f64>, normals: &[Vector3<f64>], allowed: impl Fn(usize) -> f64) -> Projection {
-    let rounding = rate_rounding(w.norm());
-    let free = |v: &Vector3<f64>| normals.iter().enumerate().all(|(i, n)| n.dot(v) + allowed(i) >= -rounding);
     let none = Projection { velocity: *w, pushing: [(0, 0.0); 3], count: 0 };
     if normals.iter().enumerate().all(|(i, n)| n.dot(w) + allowed(i) >= 0.0) {
         return none;
     }
+    // How far `v` is from allowed, and how large what rounding makes of its loads.
+    let excess =
+        |v: &Vector3<f64>| normals.iter().enumerate().map(|(i, n)| -(n.dot(v) + allowed(i))).fold(0.0, f64::max);
     let m = normals.len();
-    let lack = |i: usize| -(normals[i].dot(w) + allowed(i));
+    let lack = |v: &Vector3<f64>, i: usize| -(normals[i].dot(v) + allowed(i));
+    // If rounding decides and no subset solves, the one that comes nearest.
+    let mut best = (f64::INFINITY, Projection { velocity: Vector3::zeros(), ..none });
+    let mut good = |v: Vector3<f64>, pushing: &[(usize, f64)]| {
+        let sum: f64 = pushing.iter().map(|(_, load)| load).sum();
+        let over = excess(&v);
+        if pushing.iter().any(|(_, load)| *load < 0.0) || over >= best.0 {
+            return None;
+        }
+        let mut all = [(0, 0.0); 3];
+        all[..pushing.len()].copy_from_slice(pushing);
+        best = (over, Projection { velocity: v, pushing: all, count: pushing.len() });
+        (over <= rate_rounding(w.norm() + sum)).then_some(best.1)
+    };
     for (i, normal) in normals.iter().enumerate() {
-        let load = lack(i);
-        let v = w + normal * load;
-        if load >= 0.0 && free(&v) {
-            return Projection { velocity: v, pushing: [(i, load), (0, 0.0), (0, 0.0)], count: 1 };
+        let load = lack(w, i);
+        if let Some(found) = good(w + normal * load, &[(i, load)]) {
+            return found;
         }
     }
     for i in 0..m {
         for j in i + 1..m {
             let c = normals[i].dot(&normals[j]);
             let Some(inverse) = Matrix2::new(1.0, c, c, 1.0).try_inverse() else { continue };
-            let load = inverse * Vector2::new(lack(i), lack(j));
+            let mut load = Vector2::zeros();
+            let mut v = *w;
+            for _ in 0..REFINEMENTS {
+                load += inverse * Vector2::new(lack(&v, i), lack(&v, j));
+                v = w + normals[i] * load.x + normals[j] * load.y;
+            }
             let v = in_groove(w, [&normals[i], &normals[j]], [allowed(i), allowed(j)]);
-            if load.min() >= 0.0 && free(&v) {
-                return Projection { velocity: v, pushing: [(i, load.x), (j, load.y), (0, 0.0)], count: 2 };
+            if let Some(found) = good(v, &[(i, load.x), (j, load.y)]) {
+                return found;
             }
         }
     }
+    let fixed = (0..m).all(|i| allowed(i) == 0.0);
     for i in 0..m {
         for j in i + 1..m {
             for k in j + 1..m {
                 let across = Matrix3::from_columns(&[normals[i], normals[j], normals[k]]);
                 let Some(inverse) = (across.transpose() * across).try_inverse() else { continue };
-                let load = inverse * Vector3::new(lack(i), lack(j), lack(k));
-                let v = if (0..m).all(|i| allowed(i) == 0.0) { Vector3::zeros() } else { w + across * load };
-                if load.min() >= 0.0 && free(&v) {
-                    return Projection { velocity: v, pushing: [(i, load.x), (j, load.y), (k, load.z)], count: 3 };
+                let (mut v, mut load) = (*w, Vector3::zeros());
+                for _ in 0..REFINEMENTS {
+                    load += inverse * Vector3::new(lack(&v, i), lack(&v, j), lack(&v, k));
+                    v = w + across * load;
+                }
+                let v = if fixed { Vector3::zeros() } else { v };
+                if let Some(found) = good(v, &[(i, load.x), (j, load.y), (k, load.z)]) {
+                    return found;
                 }
             }
         }
     }
-    // Normals so nearly dependent that no subset solves: nothing moves.
-    Projection { velocity: Vector3::zeros(), ..none }
+    best.1
 }
 
 /// The vector with n_i.v = -`allowed[i]` for both `normals` that is `w` along their groove.

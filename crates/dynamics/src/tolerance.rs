@@ -99,7 +99,11 @@ pub fn merge_angle_squared(tolerance: f64, radius: f64) -> f64 {
 
 /// Whether a velocity and an acceleration in contact are parallel to rounding, so that the path is straight.
 pub fn parallel(a: &Vector3<f64>, v: &Vector3<f64>) -> bool {
-    a.cross(v).norm() <= 16.0 * UNIT_ROUNDOFF * a.norm() * v.norm()
+    // Of unit vectors: a product of four small numbers would vanish in a small scene.
+    match (a.try_normalize(0.0), v.try_normalize(0.0)) {
+        (Some(a), Some(v)) => a.cross(&v).norm() <= 16.0 * UNIT_ROUNDOFF,
+        _ => true,
+    }
 }
 
 /// Error allowed per step of a sliding motion that has no closed form, relative to the motion.
@@ -111,6 +115,10 @@ pub const FLIGHT_TOLERANCE: f64 = 1.0e-9;
 /// The least tolerance the adaptive pair can be asked for: below it the error estimate is rounding.
 pub const LEAST_TOLERANCE: f64 = 1.0e-15;
 
+/// Less time than this, in s, is none for answers in a row at time `now` (s): 2^10 of the spacing of f64 there. In longer ones the ball gets on.
+pub fn time_resolution(now: f64) -> f64 {
+    2048.0 * UNIT_ROUNDOFF * now
+}
 /// Contacts answered without time passing before they are taken to answer each other for ever, so that restitution has lost all that it can
 /// lose. With fewer, what is left of the velocity might still be seen; the run would be ended at [`MAX_STANDSTILL`].
 pub const COLLAPSE_AFTER: u32 = 128;
@@ -120,6 +128,8 @@ pub const MAX_STANDSTILL: u32 = 256;
 
 /// Steps of one ball before its simulation is ended; a fixed timestep that needs more is refused. They take hours.
 pub const STEP_BUDGET: u64 = 10_000_000_000;
+/// Contacts answered without time passing before bouncing ends whatever the restitution: hops that f64 does not resolve in time are none.
+pub const PATIENCE: u32 = 16;
 
 /// Events of one ball before its simulation is ended: a ball that bounces for ever stops here.
 pub const EVENT_BUDGET: u64 = 10_000_000;

@@ -132,13 +132,18 @@ impl Piece {
 
 /// The first f in [`from`, `to`] at which the polynomial with these `coefficients` (of f^0 first) is <= 0 and falling: pieces front to
 /// back, each ruled out, solved, or halved.
+///
+/// The pieces are those of [`from`, 1] wherever in it the search ends, so that what is found has the same bits for every `to`.
 pub(crate) fn first_entry(coefficients: &[f64; DEGREE + 1], from: f64, to: f64) -> Option<f64> {
     // Each halving pushes one piece, and after 60 a piece is narrower than the spacing of f.
-    let mut stack = [Piece::of(coefficients, from, to); 64];
+    let mut stack = [Piece::of(coefficients, from, to.max(1.0)); 64];
     let mut depth = 1;
     while depth > 0 {
         depth -= 1;
         let piece = stack[depth];
+        if piece.lo > to {
+            break;
+        }
         let f = match piece.verdict() {
             Verdict::None => continue,
             Verdict::AtStart => piece.lo,
@@ -154,7 +159,7 @@ pub(crate) fn first_entry(coefficients: &[f64; DEGREE + 1], from: f64, to: f64) 
                 piece.lo // undecided at the resolution of f: on the safe side, a hit
             }
         };
-        return Some(f);
+        return (f <= to).then_some(f);
     }
     None
 }

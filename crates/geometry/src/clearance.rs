@@ -259,6 +259,16 @@ mod tests {
     }
 
     #[test]
+    fn what_is_found_has_the_same_bits_wherever_the_search_ends() {
+        let quartic = Clearance::new([0.3, -1.1, 0.7, 0.45, -0.9]);
+        let f = quartic.first_entry(0.0, 1.0).f().unwrap();
+        for to in [f, f.next_up(), 0.5, 0.75, 0.9] {
+            assert_eq!(quartic.first_entry(0.0, to).f(), (f <= to).then_some(f), "to {to}");
+        }
+        assert_eq!(quartic.first_entry(0.0, f.next_down()), Entry::Never);
+    }
+
+    #[test]
     fn a_higher_degree_with_no_higher_terms_agrees_with_the_closed_form() {
         for (c, b, a) in [(1.0, 0.5, -3.0), (1.0, -2.5, 0.3), (0.0, 1.0, -2.0), (1.0, 1.0, 1.0), (-0.1, 0.5, 2.0)] {
             let exact = quadratic_entry(c, b, a).within(1.0).f();

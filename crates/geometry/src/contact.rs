@@ -9,7 +9,7 @@
 use crate::clearance::{Clearance, Entry};
 use crate::closest::{Feature, closest_point};
 use crate::path::Path;
-use crate::rounding::{UNIT_ROUNDOFF, contact_bound};
+use crate::rounding::{UNIT_ROUNDOFF, contact_bound, hold_bound};
 use nalgebra::{Point3, Vector3};
 
 /// A plane the ball is known to touch at the start of its path: the contact it just had, or has.
@@ -33,7 +33,7 @@ impl Hold {
     fn hides(&self, triangle: &[Point3<f64>; 3]) -> bool {
         triangle.iter().all(|v| {
             let d = v - self.point;
-            self.normal.dot(&d) <= self.slack.max(contact_bound(d.amax()))
+            self.normal.dot(&d) <= self.slack + hold_bound(d.amax())
         })
     }
 }
@@ -54,7 +54,9 @@ pub struct MovingBall<'a> {
 pub enum Contact {
     /// No contact in [0, to]: certified by a plane.
     Miss,
-    /// First contact at `f`, never late; early by no more than the rounding bound.
+    /// First contact at `f`: the ball is at most [`contact_doubt`](crate::rounding::contact_doubt) from touching there, and on an
+    /// edge or a vertex it has not touched before. On a face f is the entry into the face's own plane, to the rounding of its
+    /// equation: the ball may overlap by one [`contact_bound`].
     At {
         /// Where on the path.
         f: f64,
@@ -68,11 +70,27 @@ const MAX_ROUNDS: u32 = 256;
 
 /// The first f in [`from`, `to`] at which the ball touches `triangle` and closes in; `rounds` counts support planes.
 pub fn first_contact(ball: &MovingBall, triangle: &[Point3<f64>; 3], from: f64, to: f64, rounds: &mut u64) -> Contact {
+    match contact_from(ball, triangle, from, to, rounds) {
+        Contact::At { f, feature } => Contact::At { f: f.min(to), feature },
+        Contact::Miss => Contact::Miss,
+    }
+}
+
+/// [`first_contact`], but what is found has the same bits for every `to` <= 1, so that it may lie beyond `to` by rounding.
+pub(crate) fn contact_from(
+    ball: &MovingBall,
+    triangle: &[Point3<f64>; 3],
+    from: f64,
+    to: f64,
+    rounds: &mut u64,
+) -> Contact {
     let path = ball.path;
     // Everything relative to the start: what is far from the origin costs no digits.
     let corners = triangle.map(|v| Point3::from(v - path.start()));
     let size = corners.iter().map(|a| a.coords.amax()).fold(ball.radius, f64::max);
     let bound_at = |f: f64| contact_bound(size + path.reach(f));
+    // Planes are met on the whole path: a contact at `to` is decided as one before it.
+    let end = to.max(1.0);
 
     let mut f = from;
     for hold in ball.holds {
@@ -93,12 +111,12 @@ pub fn first_contact(ball: &MovingBall, triangle: &[Point3<f64>; 3], from: f64, 
         let gap = -farthest_along(&corners, &normal) - ball.radius;
         // Never late: the plane is moved towards the ball by the bound that holds where the path meets it.
         let mut bound = 2.0 * bound_at(f);
-        let mut entry = path.clearance(gap - bound, &normal).first_entry(f, to);
+        let mut entry = path.clearance(gap - bound, &normal).first_entry(f, end);
         if let Entry::At { f: next, .. } = entry
             && bound_at(next) > bound
         {
             bound = bound_at(next);
-            entry = path.clearance(gap - bound, &normal).first_entry(f, to);
+            entry = path.clearance(gap - bound, &normal).first_entry(f, end);
         }
         let Entry::At { f: next, .. } = entry else {
             return Contact::Miss;
@@ -106,9 +124,12 @@ pub fn first_contact(ball: &MovingBall, triangle: &[Point3<f64>; 3], from: f64, 
         let plane = path.clearance(gap, &normal);
         let touching = plane.at(f) <= 2.0 * bound && plane.rate(f) < 0.0;
         if touching || next - f <= 2.0 * UNIT_ROUNDOFF * f {
-            return Contact::At { f: polish(&plane, f, to, closest.feature), feature: closest.feature };
+            return Contact::At { f: polish(&plane, f, end, closest.feature), feature: closest.feature };
         }
         f = next;
+    }
+    if f > to {
+        return Contact::Miss;
     }
     let closest = closest_point(&corners, &Point3::from(path.displacement(f)));
     Contact::At { f, feature: closest.feature }

@@ -147,6 +147,22 @@ pub fn contact_bound(extent: f64) -> f64 {
     16.0 * UNIT_ROUNDOFF * extent
 }
 
+/// How far from touching a ball may be where a contact is reported: 5 [`contact_bound`].
+///
+/// The plane is moved towards the ball by two bounds, and what is as near as that again to the moved plane's place counts as touching; the fifth
+/// is for the rounding of f.
+pub fn contact_doubt(extent: f64) -> f64 {
+    5.0 * contact_bound(extent)
+}
+
+/// How far a point at `distance` from a plane's own may seem to stand out of the plane, as computed from its unit normal.
+///
+/// The normal is off by [`NORMAL_BOUND`] in each component, which lifts the point by sqrt(3) times that; the rest is
+/// [`contact_bound`].
+pub fn hold_bound(distance: f64) -> f64 {
+    2.0 * NORMAL_BOUND * distance + contact_bound(distance)
+}
+
 /// The radius in m that stands for a point against a mesh whose largest |coordinate| is `farthest`: 2^14 units of
 /// roundoff, so that the centre stays on its own side whatever the rounding of its position (64 units), and so that what the ball
 /// touches to within that rounding has normals within sqrt(2 64 / 2^14), a twelfth of a radian.

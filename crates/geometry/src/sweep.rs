@@ -3,10 +3,11 @@
 use crate::bounds::Aabb;
 use crate::bvh::FatSegment;
 use crate::closest::{Feature, closest_point};
-use crate::contact::{Contact, MovingBall, first_contact};
+use crate::contact::{Contact, MovingBall, contact_from};
 use crate::mesh::{Fold, Mesh};
-use crate::rounding::position_bound;
+use crate::rounding::{contact_doubt, position_bound};
 use nalgebra::{Point3, Vector3};
+use std::cmp::Ordering;
 
 /// A place of a mesh: a face, an edge or a vertex. Each edge and vertex has one name, whichever face it was found by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -92,6 +93,8 @@ impl Mesh {
         work: &mut Work,
     ) -> Option<FirstContact> {
         let start = ball.path.start();
+        let corners = [self.bounds().min(), self.bounds().max()];
+        let size = corners.map(|corner| (corner - start).amax()).into_iter().fold(ball.radius, f64::max);
         let sagitta_limit = SAGITTA_SHARE * ball.radius.max(self.face_size());
         let mut best: Option<FirstContact> = None;
         // Front to back: the stretch to look at next is the last of the stack.
@@ -102,7 +105,9 @@ impl Mesh {
             let (from, end) = stack[depth];
             let chord = ball.path.chord(from, end);
             let (a, b) = (start + chord.from, start + chord.to);
-            let margin = position_bound(a.coords.amax().max(b.coords.amax()).max(ball.path.reach(end)));
+            // What a contact in doubt may be off by counts as near, so that the boxes leave out no face that would report one.
+            let reach = ball.path.reach(end);
+            let margin = position_bound(a.coords.amax().max(b.coords.amax()).max(reach)) + contact_doubt(size + reach);
             let radius = ball.radius + chord.sagitta + margin;
             if !Aabb::of_points(&[a, b]).inflate(radius).intersects(self.bounds()) {
                 continue;
@@ -120,11 +125,11 @@ impl Mesh {
                 let free = free_until(face);
                 if free <= limit {
                     work.triangles += 1;
-                    let contact = first_contact(ball, &self.triangle(face), free, limit, &mut work.rounds);
+                    let contact = contact_from(ball, &self.triangle(face), free, limit, &mut work.rounds);
                     if let Contact::At { f, .. } = contact
-                        && best.is_none_or(|found| (f, face) < (found.f, found.face))
+                        && best.is_none_or(|found| (f.min(to), face) < (found.f, found.face))
                     {
-                        best = Some(FirstContact { f, face });
+                        best = Some(FirstContact { f: f.min(to), face });
                     }
                 }
                 best.map_or(f64::INFINITY, |found| (found.f - from) / (end - from))
@@ -136,11 +141,20 @@ impl Mesh {
         best
     }
 
-    /// What a ball of `radius` at `centre` touches, to within `tolerance`, in the order of the sites.
+    /// What a ball of `radius` at `centre`, moving along `heading`, touches, to within `tolerance`, in the order of the sites.
     ///
+    /// Where rounding decides between a face and its border, it is what the ball moves to.
     /// An edge counts only where none of its faces is touched itself, and a vertex only where none of its edges and faces is: so
     /// the inner edges of a flat or hollow surface do not show.
-    pub fn touches(&self, centre: &Point3<f64>, radius: f64, tolerance: f64, work: &mut Work) -> Vec<Touch> {
+    pub fn touches(
+        &self,
+        centre: &Point3<f64>,
+        heading: &Vector3<f64>,
+        radius: f64,
+        tolerance: f64,
+        work: &mut Work,
+    ) -> Vec<Touch> {
+        let ahead = Point3::from(heading.try_normalize(0.0).unwrap_or_else(Vector3::zeros) * tolerance);
         let reach = radius + tolerance;
         let mut found: Vec<(Site, Vector3<f64>)> = Vec::new();
         let around = Aabb::of_points(&[*centre]).inflate(reach + position_bound(centre.coords.amax() + reach));
@@ -149,10 +163,21 @@ impl Mesh {
             let local = self.triangle(face).map(|v| Point3::from(v - centre));
             let closest = closest_point(&local, &Point3::origin());
             if closest.offset.norm() <= reach {
-                found.push((self.site(face, closest.feature), closest.offset));
+                let site = match closest.feature {
+                    // Rounding found the edge: in a fold that rises towards the ball, it is the face that is touched.
+                    Feature::Edge(edge) if self.rises(face, edge, &closest.offset) => Site::Face(face),
+                    Feature::Face => Site::Face(face),
+                    // Face before edge before vertex.
+                    feature => self.site(face, feature.min(closest_point(&local, &ahead).feature)),
+                };
+                found.push((site, closest.offset));
             }
         });
-        found.sort_by_key(|(site, _)| *site);
+        // Of the offsets to an edge or a vertex from its faces, which differ by rounding, the same one in whatever order they come.
+        let order = |a: &Vector3<f64>, b: &Vector3<f64>| {
+            a.iter().zip(b.iter()).map(|(a, b)| a.total_cmp(b)).find(|o| o.is_ne()).unwrap_or(Ordering::Equal)
+        };
+        found.sort_by(|(a, u), (b, v)| a.cmp(b).then_with(|| order(u, v)));
         found.dedup_by_key(|(site, _)| *site);
         let hidden = |site: &Site| found.iter().any(|(other, _)| self.hides(other, site));
         found
@@ -160,6 +185,13 @@ impl Mesh {
             .filter(|(site, _)| !hidden(site))
             .filter_map(|&(site, away)| self.normal_at(site, &away).map(|normal| Touch { site, normal }))
             .collect()
+    }
+
+    /// Whether the fold at `edge` of `face` is hollow on the side that `away` points to.
+    fn rises(&self, face: u32, edge: u8, away: &Vector3<f64>) -> bool {
+        let fold = self.fold(face, edge.into());
+        let front = self.normal(face).is_some_and(|n| n.dot(away) >= 0.0);
+        (if front { fold } else { fold.from_back() }) == Fold::Concave
     }
 
     /// The one name of a feature of `face`.
@@ -294,7 +326,10 @@ impl Mesh {
             Site::Face(_) => Bend::Flat,
             Site::Edge { face, edge } if self.fold(face, edge.into()) == Fold::Flat => Bend::Flat,
             Site::Edge { face, edge } => {
-                let [a, b] = self.edge_ends(face, edge).map(|v| self.vertices()[v as usize]);
+                // From the lower vertex to the higher: the same bits from whichever face the edge is seen.
+                let mut ends = self.edge_ends(face, edge);
+                ends.sort_unstable();
+                let [a, b] = ends.map(|v| self.vertices()[v as usize]);
                 match (b - a).try_normalize(0.0) {
                     Some(along) => Bend::Around { point: a, along },
                     None => Bend::About { point: a },
@@ -318,7 +353,9 @@ impl Mesh {
     pub fn foot(&self, site: Site, centre: &Point3<f64>) -> Option<(Point3<f64>, Vector3<f64>)> {
         let Some(away) = self.bend(site).away_from(centre) else {
             let face = site.face();
-            let (n, point) = (self.normal(face)?.into_inner(), self.triangle(face)[0]);
+            // From the lowest of its vertices: the same bits with whichever of them the face begins.
+            let [a, b, c] = self.faces()[face as usize];
+            let (n, point) = (self.normal(face)?.into_inner(), self.vertices()[a.min(b).min(c) as usize]);
             let height = n.dot(&(centre - point));
             return Some((centre - n * height, if height < 0.0 { -n } else { n }));
         };

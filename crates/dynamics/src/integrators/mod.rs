@@ -60,11 +60,24 @@ impl Integrator {
     }
 
     /// The path of `timestep` seconds from `state`; the adaptive pair may give a shorter one.
-    pub fn step(&mut self, forces: &Forces, state: &State, timestep: f64, counters: &mut Counters) -> Step {
+    ///
+    /// A ball that leaves something tangentially (`tangential`) begins with the velocity it has, also under the semi-implicit method:
+    /// with the new one it would set out into what it leaves.
+    pub fn step(
+        &mut self,
+        forces: &Forces,
+        state: &State,
+        timestep: f64,
+        tangential: bool,
+        counters: &mut Counters,
+    ) -> Step {
         counters.paths += 1;
         match self {
             Integrator::Exact => exact::step(state, forces.acceleration(state, counters), timestep),
             Integrator::Stepping(Stepping::Euler, _) => {
+                euler::explicit(state, forces.acceleration(state, counters), timestep)
+            }
+            Integrator::Stepping(Stepping::SemiImplicitEuler, _) if tangential => {
                 euler::explicit(state, forces.acceleration(state, counters), timestep)
             }
             Integrator::Stepping(Stepping::SemiImplicitEuler, _) => {

@@ -19,7 +19,9 @@ impl<O: Observer> Walk<'_, O> {
         for _ in 0..self.halvings {
             timestep *= 0.5;
         }
-        let step = self.integrator.step(&self.forces, &self.state, timestep, &mut self.counters);
+        let rounding = rate_rounding(self.state.velocity.norm());
+        let tangential = self.contacts.iter().any(|c| c.rate <= rounding);
+        let step = self.integrator.step(&self.forces, &self.state, timestep, tangential, &mut self.counters);
         if self.is_unstable(&step) {
             self.ending = Some(Ending::UnstableStep);
             return;
@@ -48,7 +50,7 @@ impl<O: Observer> Walk<'_, O> {
         let before = (self.state.velocity - calm).norm() + self.forces.constant.norm() * step.time(step.to);
         let after = (step.end().velocity - calm).norm();
         // What is not a number is not stable either.
-        !(after <= before + rate_rounding(before))
+        after.is_nan() || after > before + rate_rounding(before)
     }
 
     /// At a collision: what is touched, how fast, and the answer.
@@ -91,7 +93,7 @@ impl<O: Observer> Walk<'_, O> {
         self.contacts = contacts;
         let answered = closing.contains(&true);
         let carried = self.settle();
-        if !answered && !carried && hit.f == 0.0 {
+        if !answered && !carried && (hit.f == 0.0 || !step.exact) {
             // The path closes where the ball does not: the hop is too short for this step.
             self.halvings += 1;
             self.counters.halvings += 1;
@@ -125,7 +127,10 @@ impl<O: Observer> Walk<'_, O> {
 
     /// What counts as touching here.
     pub(super) fn touch_tolerance(&self, travelled: f64) -> f64 {
-        touch_distance(self.state.position.coords.amax().max(self.forces.ball.radius()), travelled)
+        let here = self.state.position.coords.amax().max(self.forces.ball.radius());
+        // Contact with a face is found to the rounding of its corners as well; planes have none.
+        let corners = if self.plan.meshes.is_empty() { 0.0 } else { self.plan.farthest };
+        touch_distance(here + corners, travelled)
     }
 
     /// Puts the centre back onto the surface it touches, within the rounding bound of its position (R15: explicit, bounded, counted).

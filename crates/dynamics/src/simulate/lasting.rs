@@ -3,11 +3,12 @@
 use super::{Settling, Walk};
 use crate::body::State;
 use crate::contacts::{Contact, Contacts, MAX_CONTACTS};
+use crate::effects::friction::ContactFriction;
 use crate::events::{EventKind, Motion};
 use crate::integrators::{Step, exact};
 use crate::observer::Observer;
 use crate::sliding::{Balance, Carrier, Slide, slide};
-use crate::tolerance::{SLIDING_TOLERANCE, least_hop};
+use crate::tolerance::{PATIENCE, SLIDING_TOLERANCE, least_hop, rate_rounding, time_resolution};
 use carom_geometry::sweep::{Bend, RegionBound};
 use nalgebra::Vector3;
 
@@ -19,15 +20,32 @@ impl<O: Observer> Walk<'_, O> {
         let carriers = self.carriers();
         let mut carrying = [false; MAX_CONTACTS];
         let mut settling = None;
-        for (i, carrier) in carriers.iter().enumerate() {
-            let contact = &carrier.contact;
-            let pressed = -contact.normal.dot(&a) - carrier.centripetal(&self.state.velocity);
-            carrying[i] = self.ends_bouncing(contact, pressed);
-            let c_r = self.plan.surfaces[contact.surface].material.restitution.coefficient();
-            // The air ends the hops at c_r = 1, not in a time that has a formula.
-            if carrying[i] && contact.rate > 0.0 && c_r < 1.0 {
-                let seconds = 2.0 * contact.rate / (pressed * (1.0 - c_r));
-                settling = Some(Settling { seconds, closing: contact.rate, contact: i });
+        // A contact may press the ball into another that its weight alone would not press it into: asked again, until no other carries.
+        let mut free = a;
+        let mut more = true;
+        while std::mem::take(&mut more) {
+            for (i, carrier) in carriers.iter().enumerate() {
+                if carrying[i] {
+                    continue;
+                }
+                let contact = &carrier.contact;
+                let pressed = -contact.normal.dot(&free) - carrier.centripetal(&self.state.velocity);
+                carrying[i] = self.ends_bouncing(contact, pressed);
+                more |= carrying[i];
+                let c_r = self.plan.surfaces[contact.surface].material.restitution.coefficient();
+                if carrying[i] && contact.rate > 0.0 && c_r < 1.0 {
+                    let seconds = 2.0 * contact.rate / (pressed * (1.0 - c_r));
+                    settling = Some(Settling { seconds, closing: contact.rate, contact: i });
+                }
+            }
+            let held: Vec<Carrier> = carriers.iter().zip(&carrying).filter(|(_, c)| **c).map(|(c, _)| *c).collect();
+            free = Balance::of(&a, &held, &self.state).free;
+        }
+        if settling.is_some() && self.drives_into_others(&carrying) {
+            // What hops is not held down where that would press the ball into something else: it flies the hop.
+            settling = None;
+            for (contact, carrying) in self.contacts.iter().zip(&mut carrying) {
+                *carrying &= contact.rate <= 0.0;
             }
         }
         let several = carrying.iter().filter(|c| **c).count() > 1;
@@ -56,7 +74,12 @@ impl<O: Observer> Walk<'_, O> {
     /// the rest test, for the normal speed; the fourth tells sliding from resting).
     fn ends_bouncing(&mut self, contact: &Contact, pressed: f64) -> bool {
         self.counters.rest += 1;
-        let c_r = self.plan.surfaces[contact.surface].material.restitution.coefficient();
+        // What loses nothing bounces for ever. The air takes from each hop; an elastic surface with
+        // friction loses in a corner, without end.
+        let material = &self.plan.surfaces[contact.surface].material;
+        let smooth = material.friction.in_contact() == ContactFriction::Sliding(0.0);
+        let in_air = !self.forces.are_constant();
+        let loses = material.restitution.coefficient() < 1.0 || !smooth || in_air || self.standstill > PATIENCE;
         let thresholds = self.plan.rest.at(pressed.max(0.0));
         let still = self.state.velocity == Vector3::zeros();
         if contact.rate == 0.0 {
@@ -64,9 +87,9 @@ impl<O: Observer> Walk<'_, O> {
         }
         let hop = contact.rate * contact.rate / (2.0 * pressed);
         let resolved = self.integrator.timestep().map_or(0.0, |h| least_hop(pressed, h));
-        // What loses nothing bounces for ever: neither at impacts nor on the way.
-        let loses = c_r < 1.0 || !self.forces.are_constant();
-        pressed > 0.0 && loses && (contact.rate <= thresholds.speed || hop <= resolved)
+        // Neither is a hop one that the clock does not resolve.
+        let brief = 2.0 * contact.rate <= pressed * time_resolution(self.clock.now());
+        pressed > 0.0 && loses && (contact.rate <= thresholds.speed || hop <= resolved || brief)
     }
 
     /// The contacts as carriers.
@@ -82,16 +105,19 @@ impl<O: Observer> Walk<'_, O> {
             .collect()
     }
 
+    /// Whether taking the ball along the contacts that carry would drive it into one that does not.
+    fn drives_into_others(&self, carrying: &[bool]) -> bool {
+        let contacts = || self.contacts.iter().zip(carrying);
+        let held: Vec<_> = contacts().filter(|(_, carrying)| **carrying).map(|(c, _)| c.normal).collect();
+        let v = along(&held, self.state.velocity);
+        let rounding = rate_rounding(self.state.velocity.norm());
+        contacts().any(|(c, carrying)| !carrying && c.normal.dot(&v) < -rounding)
+    }
+
     /// Takes from the velocity what would leave or enter a lasting contact.
     fn make_tangential(&mut self) {
         let lasting: Vec<Vector3<f64>> = self.contacts.iter().filter(|c| c.lasting).map(|c| c.normal).collect();
-        let v = self.state.velocity;
-        self.state.velocity = match lasting[..] {
-            [] => v,
-            [n] => v - n * n.dot(&v),
-            [a, b] => a.cross(&b).try_normalize(0.0).map_or(v, |t| t * t.dot(&v)),
-            _ => Vector3::zeros(),
-        };
+        self.state.velocity = along(&lasting, self.state.velocity);
     }
 
     fn set_flying(&mut self, was_sliding: bool) {
@@ -238,10 +264,10 @@ impl<O: Observer> Walk<'_, O> {
         }
     }
 
-    /// Where the step first leaves the region of a lasting contact.
+    /// Where the step first leaves the region of a lasting contact, and which of the lasting ones that is.
     fn exit(&mut self, step: &Step) -> Option<(f64, usize, RegionBound)> {
         let mut first: Option<(f64, usize, RegionBound)> = None;
-        for (i, contact) in self.contacts.iter().enumerate().filter(|(_, c)| c.lasting) {
+        for (i, contact) in self.contacts.iter().filter(|c| c.lasting).enumerate() {
             if let Some((f, bound)) = self.obstacles.exit(step, contact, &mut self.counters)
                 && first.is_none_or(|(best, ..)| f < best)
             {
@@ -253,7 +279,7 @@ impl<O: Observer> Walk<'_, O> {
 
     /// The neighbouring place takes over.
     fn cross(&mut self, contact: usize, bound: &RegionBound) {
-        let contact = &mut self.contacts[contact];
+        let Some(contact) = self.contacts.iter_mut().filter(|c| c.lasting).nth(contact) else { return };
         let foot = self.obstacles.mesh(contact.surface).and_then(|m| m.foot(bound.next, &self.state.position));
         if let Some((_, normal)) = foot {
             contact.site = Some(bound.next);
@@ -279,5 +305,15 @@ impl<O: Observer> Walk<'_, O> {
             self.correct(contact, self.touch_tolerance(0.0).max(slack));
         }
         self.make_tangential();
+    }
+}
+
+/// The part of `v` along all planes with these normals.
+fn along(normals: &[Vector3<f64>], v: Vector3<f64>) -> Vector3<f64> {
+    match normals {
+        [] => v,
+        [n] => v - n * n.dot(&v),
+        [a, b] => a.cross(b).try_normalize(0.0).map_or(v, |t| t * t.dot(&v)),
+        _ => Vector3::zeros(),
     }
 }

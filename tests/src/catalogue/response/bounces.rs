@@ -134,10 +134,7 @@ fn level_bounces() -> Figure {
     for (g, h, r) in [(9.81, 2.0, 0.0), (9.81, 0.3, 0.1), (1.62, 1e-9, 0.0), (274.0, 1e6, 0.5)] {
         // The first impact to 50 digits is not needed: the period is twice the time of fall, to a few u.
         let period = 2.0 * f64::sqrt(2.0 * h / g);
-        let stage = Stage::new(period * MANY as f64)
-            .down(g)
-            .floor(smooth(1.0))
-            .ball([0.0, 0.0, r + h], [0.0; 3], r);
+        let stage = Stage::new(period * MANY as f64).down(g).floor(smooth(1.0)).ball([0.0, 0.0, r + h], [0.0; 3], r);
         let (mut n, mut first, mut last) = (0u64, None, 0.0);
         let ending = watch(&stage, |event| {
             n += 1;
@@ -166,10 +163,11 @@ fn slanted_bounces() -> Figure {
     let mut worst = 0.0;
     for slant in SLANTS {
         let n = Vector3::from(slant).normalize();
-        let stage = Stage::new(2.0 * MANY as f64)
-            .gravity(-9.81 * n)
-            .plane("slope", smooth(1.0), [0.0; 3], slant)
-            .ball(Point3::from(2.0 * n), [0.3, 0.2, 0.1], 0.0);
+        let stage = Stage::new(2.0 * MANY as f64).gravity(-9.81 * n).plane("slope", smooth(1.0), [0.0; 3], slant).ball(
+            Point3::from(2.0 * n),
+            [0.3, 0.2, 0.1],
+            0.0,
+        );
         let mut first = None;
         let mut bounces = 0;
         watch(&stage, |event| {
@@ -254,9 +252,8 @@ fn apex_after_drop() -> Figure {
             let Some((top, _)) = run.trajectory.at(middle) else { continue };
             let expected = 2.0 * e.powi(2 * (n as i32 + 1));
             let bound = 8.0 * (n as f64 + 2.0) * U;
-            worst = check.within(worst, (top.position.z / expected - 1.0).abs(), bound, || {
-                format!("e = {e}, apex {}", n + 1)
-            });
+            worst = check
+                .within(worst, (top.position.z / expected - 1.0).abs(), bound, || format!("e = {e}, apex {}", n + 1));
         }
     }
     check.figure(format!("worst {worst:.1e}"))

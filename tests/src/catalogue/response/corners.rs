@@ -87,9 +87,8 @@ fn slanted_corners() -> Figure {
         let mut first = None;
         for order in ORDERS {
             let name = |i: usize| ["a", "b", "c"][i];
-            let stage = order
-                .iter()
-                .fold(Stage::new(2.0), |stage, &i| stage.plane(name(i), smooth(e), [0.0; 3], normals[i]));
+            let stage =
+                order.iter().fold(Stage::new(2.0), |stage, &i| stage.plane(name(i), smooth(e), [0.0; 3], normals[i]));
             let run = stage.ball(Point3::from(-v), v, 0.0).run();
             let after = run.outcome.state.velocity;
             let closing = normals.iter().map(|n| -n.dot(&after)).fold(0.0, f64::max);

@@ -131,11 +131,7 @@ fn extreme_steps() -> Figure {
         [|step| Method::Euler { step }, |step| Method::SemiImplicitEuler { step }, |step| Method::Rk4 { step }];
     for method in methods {
         let stage = |step: f64| {
-            Stage::new(3.0)
-                .down(9.81)
-                .floor(smooth(0.5))
-                .ball([0.0, 0.0, 1.0], [0.0; 3], 0.1)
-                .method(method(step))
+            Stage::new(3.0).down(9.81).floor(smooth(0.5)).ball([0.0, 0.0, 1.0], [0.0; 3], 0.1).method(method(step))
         };
         for step in [5e-324, 1e-300, 1e-20] {
             let refused = Plan::new(&stage(step).0).map_err(|e| e.to_string());
