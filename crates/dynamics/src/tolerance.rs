@@ -119,6 +119,9 @@ pub const LEAST_TOLERANCE: f64 = 1.0e-15;
 pub fn time_resolution(now: f64) -> f64 {
     2048.0 * UNIT_ROUNDOFF * now
 }
+/// Hops without time passing before bouncing ends: fewer than [`COLLAPSE_AFTER`], so that what is left of them is summed and not cut.
+pub const PATIENCE_WITH_HOPS: u32 = COLLAPSE_AFTER / 2;
+
 /// Contacts answered without time passing before they are taken to answer each other for ever, so that restitution has lost all that it can
 /// lose. With fewer, what is left of the velocity might still be seen; the run would be ended at [`MAX_STANDSTILL`].
 pub const COLLAPSE_AFTER: u32 = 128;

@@ -8,7 +8,7 @@ use crate::events::{EventKind, Motion};
 use crate::integrators::{Step, exact};
 use crate::observer::Observer;
 use crate::sliding::{Balance, Carrier, Slide, slide};
-use crate::tolerance::{PATIENCE, SLIDING_TOLERANCE, least_hop, rate_rounding, time_resolution};
+use crate::tolerance::{PATIENCE, PATIENCE_WITH_HOPS, SLIDING_TOLERANCE, least_hop, rate_rounding, time_resolution};
 use carom_geometry::sweep::{Bend, RegionBound};
 use nalgebra::Vector3;
 
@@ -87,8 +87,9 @@ impl<O: Observer> Walk<'_, O> {
         }
         let hop = contact.rate * contact.rate / (2.0 * pressed);
         let resolved = self.integrator.timestep().map_or(0.0, |h| least_hop(pressed, h));
-        // Neither is a hop one that the clock does not resolve.
-        let brief = 2.0 * contact.rate <= pressed * time_resolution(self.clock.now());
+        // Nor does one go on whose hops the clock has not resolved for long: what is left of them has a closed form.
+        let brief =
+            self.standstill >= PATIENCE_WITH_HOPS && 2.0 * contact.rate <= pressed * time_resolution(self.clock.now());
         pressed > 0.0 && loses && (contact.rate <= thresholds.speed || hop <= resolved || brief)
     }
 
