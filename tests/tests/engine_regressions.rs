@@ -295,7 +295,7 @@ fn physx505_a_graze_hides_no_wall_behind_it() {
 fn physx600_an_overlap_at_the_start_is_reported_as_touching() {
     let faces = vec![p(0.0, 0.0, 0.0), p(1.0, 0.0, 0.0), p(0.0, 0.0, -1.0)];
     let mesh = Mesh::new(faces, vec![[0, 1, 2]]).unwrap();
-    let touches = mesh.touches(&Point3::origin(), 0.3, 0.0, &mut Work::default());
+    let touches = mesh.touches(&Point3::origin(), &nalgebra::Vector3::zeros(), 0.3, 0.0, &mut Work::default());
     assert_eq!(touches.len(), 1);
     // It is no collision, as the ball is on its way out.
     assert_eq!(cast(Point3::origin(), v(-1.0, 0.0, 0.0), 0.3, 1.0, &mesh.triangle(0)), Contact::Miss);

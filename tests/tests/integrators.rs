@@ -29,7 +29,7 @@ fn r07_r08_r11_the_first_hit_of_the_chapters_euler() {
         times.see(impact.time, t, in_time, place);
         speeds.see(impact.velocity_in.z, v, rounding * (v.abs() + v0), place);
         fractions.see(cut.to, f, in_time / h, place);
-        assert_eq!(cut.end(), impact.time);
+        assert_eq!(cut.end, impact.time);
         let energy = 0.5 * v0 * v0 + G * y0;
         gains.see(kinetic(&cut.step.at(cut.to)) / energy - 1.0, gain, 4.0 * rounding, place);
         late.see(impact.time - t_exact, row.number("t_error"), in_time, place);

@@ -66,7 +66,7 @@ fn respond_to_one(
 }
 
 /// The rate of a contact after the velocity went from `before` to `after`: unchanged where the change has no part in it.
-fn changed_rate(contact: &Contact, before: &Vector3<f64>, after: &Vector3<f64>) -> f64 {
+pub(crate) fn changed_rate(contact: &Contact, before: &Vector3<f64>, after: &Vector3<f64>) -> f64 {
     let change = contact.normal.dot(&(after - before));
     if change.abs() <= rate_rounding(before.norm()) { contact.rate } else { contact.rate + change }
 }

@@ -115,6 +115,9 @@ pub const FLIGHT_TOLERANCE: f64 = 1.0e-9;
 /// The least tolerance the adaptive pair can be asked for: below it the error estimate is rounding.
 pub const LEAST_TOLERANCE: f64 = 1.0e-15;
 
+/// What a tolerance must be, in words: from [`LEAST_TOLERANCE`] to 1.
+pub(crate) const TOLERANCE_RANGE: &str = "between 1e-15 and 1";
+
 /// Less time than this, in s, is none for answers in a row at time `now` (s): 2^10 of the spacing of f64 there. In longer ones the ball gets on.
 pub fn time_resolution(now: f64) -> f64 {
     2048.0 * UNIT_ROUNDOFF * now
