@@ -103,7 +103,10 @@ fn balls_inside() -> Figure {
     for (name, solid) in spheres() {
         let faces = triangles(&solid);
         let size = solid.0.iter().map(|p| (p - solid.0[0]).amax()).fold(0.0, f64::max);
-        for k in 0..120 { if std::env::var("ALL").is_ok() { println!("{name} {k}"); }
+        for k in 0..120 {
+            if std::env::var("ALL").is_ok() {
+                println!("{name} {k}");
+            }
             let start = inside(&mut random, &solid);
             let aim = target(&mut random, &solid) - start;
             // As fast as it takes to get there in 1 s; every other one under a gravity that bends its way by as much.
