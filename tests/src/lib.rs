@@ -1,5 +1,6 @@
 //! What the cross-crate tests share.
 
+pub mod catalogue;
 pub mod checker;
 pub mod data;
 pub mod exact;

@@ -9,7 +9,7 @@ use crate::integrators::{Step, exact};
 use crate::observer::Observer;
 use crate::response::changed_rate;
 use crate::sliding::{Balance, Carrier, Slide, slide};
-use crate::tolerance::{PATIENCE, SLIDING_TOLERANCE, least_hop, rate_rounding};
+use crate::tolerance::{PATIENCE, PATIENCE_WITH_HOPS, SLIDING_TOLERANCE, least_hop, rate_rounding, time_resolution};
 use carom_geometry::rounding::position_bound;
 use carom_geometry::sweep::{Bend, RegionBound};
 use nalgebra::Vector3;
@@ -82,10 +82,12 @@ impl<O: Observer> Walk<'_, O> {
     /// the rest test, for the normal speed; the fourth tells sliding from resting).
     fn ends_bouncing(&mut self, contact: &Contact, pressed: f64) -> bool {
         self.counters.rest += 1;
-        // What loses nothing bounces for ever. An elastic surface with friction loses in a corner, without end.
+        // What loses nothing bounces for ever. The air takes from each hop; an elastic surface with
+        // friction loses in a corner, without end.
         let material = &self.plan.surfaces[contact.surface].material;
         let smooth = material.friction.in_contact() == ContactFriction::Sliding(0.0);
-        let loses = material.restitution.coefficient() < 1.0 || !smooth || self.standstill > PATIENCE;
+        let in_air = !self.forces.are_constant();
+        let loses = material.restitution.coefficient() < 1.0 || !smooth || in_air || self.standstill > PATIENCE;
         let thresholds = self.plan.rest.at(pressed.max(0.0));
         let still = self.state.velocity == Vector3::zeros();
         if contact.rate == 0.0 {
@@ -94,7 +96,11 @@ impl<O: Observer> Walk<'_, O> {
         let hop = contact.rate * contact.rate / (2.0 * pressed);
         let resolved = self.integrator.timestep().map_or(0.0, |h| least_hop(pressed, h));
         let hidden = hop <= position_bound(self.plan.farthest.max(self.state.position.coords.amax()));
-        pressed > 0.0 && (loses || hidden) && (contact.rate <= thresholds.speed || hop <= resolved)
+        // Nor does one go on whose hops the clock has not resolved for long: what is left of them has a closed form.
+        let brief =
+            self.standstill >= PATIENCE_WITH_HOPS && 2.0 * contact.rate <= pressed * time_resolution(self.clock.now());
+        let over = contact.rate <= thresholds.speed || hop <= resolved;
+        pressed > 0.0 && ((over && (loses || hidden)) || (brief && loses))
     }
 
     /// The contacts as carriers.
