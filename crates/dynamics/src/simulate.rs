@@ -57,8 +57,8 @@ pub fn simulate(plan: &Plan, ball: &Ball, observer: &mut impl Observer) -> Outco
             Motion::Sliding => walk.slide(),
             Motion::Resting => walk.rest(),
         }
-        if walk.counters.paths >= STEP_BUDGET {
-            walk.ending = walk.ending.or(Some(Ending::StepBudget));
+        if walk.counters.paths >= STEP_BUDGET && walk.ending.is_none() {
+            walk.give_up(Ending::StepBudget, EventKind::StepBudget);
         }
     }
     Outcome {
@@ -132,9 +132,6 @@ impl<O: Observer> Walk<'_, O> {
             self.observer.segment(&Segment { time, end, step: *step, to, motion });
         }
         self.state = step.at(to);
-        if !(self.state.position.coords.sum() + self.state.velocity.sum()).is_finite() {
-            self.ending = Some(Ending::OutOfRange);
-        }
         if end - self.moved > time_resolution(end) {
             self.standstill = 0;
             self.moved = end;
@@ -144,6 +141,15 @@ impl<O: Observer> Walk<'_, O> {
         if self.standstill > MAX_STANDSTILL {
             self.give_up(Ending::UnresolvedContact, EventKind::UnresolvedContact);
         }
+    }
+
+    /// Whether `step` is none because a number in it is not finite; ends the simulation of the ball if so.
+    fn diverges(&mut self, step: &Step) -> bool {
+        let diverges = !step.is_finite();
+        if diverges {
+            self.give_up(Ending::Diverged, EventKind::Diverged);
+        }
+        diverges
     }
 
     /// Rests to the end.

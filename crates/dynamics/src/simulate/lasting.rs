@@ -212,6 +212,9 @@ impl<O: Observer> Walk<'_, O> {
                 Slide { step, stops: seconds == settling.seconds }
             }
         };
+        if self.diverges(&step) {
+            return;
+        }
         let motion = if self.settling.is_some() { Motion::Flying } else { Motion::Sliding };
         let exit = self.exit(&step);
         let returns = self.obstacles.returns(&step, &self.contacts, &mut self.counters);
