@@ -20,7 +20,11 @@ use nalgebra::{Point3, Vector3};
 
 /// A ball thrown into a room with friction, which bounces and comes to rest.
 fn thrown() -> Stage {
-    Stage::new(20.0).down(9.81).room(rough(0.7, coulomb(0.3)), [3.0, 2.0, 2.5]).ball([1.0, 0.5, 1.5], [4.0, 2.0, 1.0], 0.1)
+    Stage::new(20.0).down(9.81).room(rough(0.7, coulomb(0.3)), [3.0, 2.0, 2.5]).ball(
+        [1.0, 0.5, 1.5],
+        [4.0, 2.0, 1.0],
+        0.1,
+    )
 }
 
 #[test]
@@ -219,7 +223,8 @@ fn r27_time_place_and_distance_of_a_hit_are_within_their_bounds() {
         let normal = Vector3::new(0.6, 0.0, 0.8);
         let shift = Vector3::new(far, -far, far);
         let start = Point3::origin() + shift + normal * 2.25;
-        let stage = Stage::new(1.0).gravity(normal * -16.0).plane("floor", smooth(0.5), Point3::origin() + shift, normal);
+        let stage =
+            Stage::new(1.0).gravity(normal * -16.0).plane("floor", smooth(0.5), Point3::origin() + shift, normal);
         let impact = stage.ball(start, [0.0; 3], 0.25).run().impacts()[0];
         let bound = touch_distance(far + 2.25, 2.0);
         let distance = normal.dot(&(impact.position - (Point3::origin() + shift))) - 0.25;
@@ -237,7 +242,8 @@ fn r28_a_hit_position_below_the_plane_does_not_let_the_ball_through() {
         for exponent in [-200, -50, -10, 0, 10, 50, 200] {
             let size = 2f64.powi(exponent);
             let z = 0.25 * size + k as f64 * size * U;
-            let stage = Stage::new(4.0).down(size).floor(smooth(0.5)).ball([0.0, 0.0, z], [0.0, 0.0, -size], 0.25 * size);
+            let stage =
+                Stage::new(4.0).down(size).floor(smooth(0.5)).ball([0.0, 0.0, z], [0.0, 0.0, -size], 0.25 * size);
             let run = stage.run();
             assert!((1..200).contains(&run.impacts().len()), "{} impacts", run.impacts().len());
             assert_eq!(run.outcome.motion, Motion::Resting);
@@ -268,7 +274,8 @@ fn r28_never_through_a_thin_wall_at_any_speed() {
 
 #[test]
 fn r18_a_ball_is_refused_where_f64_does_not_resolve_it() {
-    let stage = Stage::new(1.0).plane("far", smooth(0.5), [1e8, 0.0, 0.0], [-1.0, 0.0, 0.0]).ball([0.0; 3], [0.0; 3], 1e-9);
+    let stage =
+        Stage::new(1.0).plane("far", smooth(0.5), [1e8, 0.0, 0.0], [-1.0, 0.0, 0.0]).ball([0.0; 3], [0.0; 3], 1e-9);
     let error = carom_dynamics::plan::Plan::new(&stage.0).unwrap_err().to_string();
     assert!(error.contains("1e8") || error.contains("100000000"), "{error}");
     assert!(Ball::new(Point3::origin(), Vector3::zeros(), -1.0, None).is_err());

@@ -61,7 +61,8 @@ fn r35_a_moving_point_meets_a_polygon_and_finds_its_normal() {
         assert!((textbook - exact).abs() * closing <= 512.0 * UNIT_ROUNDOFF * 10.0);
         assert!(swept.f <= exact && (exact - swept.f) * closing <= 1.01 * radius + 512.0 * UNIT_ROUNDOFF * 10.0);
         // The normal there faces the point.
-        let touches = mesh.touches(&path.at(swept.f), &nalgebra::Vector3::zeros(), radius, radius, &mut Work::default());
+        let touches =
+            mesh.touches(&path.at(swept.f), &nalgebra::Vector3::zeros(), radius, radius, &mut Work::default());
         assert!(!touches.is_empty());
         assert!(touches.iter().all(|touch| (touch.normal - n).norm() <= 1e-3), "{touches:?} {n}");
         hits += 1;

