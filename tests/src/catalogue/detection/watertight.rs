@@ -104,7 +104,7 @@ fn balls_inside() -> Figure {
     for (name, solid) in spheres(0.03).into_iter().filter(|(name, _)| *name != "1e-160") {
         let faces = triangles(&solid);
         let size = solid.0.iter().map(|p| (p - solid.0[0]).amax()).fold(0.0, f64::max);
-        for k in 0..120 {
+        for k in 0..60 {
             let start = inside(&mut random, &solid);
             let aim = target(&mut random, &solid) - start;
             // As fast as it takes to get there in 1 s; every other one under a gravity that bends its way by as much.
@@ -115,7 +115,7 @@ fn balls_inside() -> Figure {
             let radius = if k % 3 == 0 { 0.0 } else { room * 0.5 };
             let (c_r, what) = ([1.0, 0.9][k % 2], format!("{name}, ball {k}"));
             let (vertices, corners) = solid.clone();
-            let stage = Stage::new(12.0).gravity(g).mesh("sphere", smooth(c_r), vertices, corners);
+            let stage = Stage::new(6.0).gravity(g).mesh("sphere", smooth(c_r), vertices, corners);
             let run = stage.ball(start, velocity, radius).run();
             keep_events_apart(&mut bound, &run, &what);
             bound.keep(!run.impacts().is_empty(), || format!("{what}: no impact"));
@@ -177,7 +177,7 @@ fn on_the_diagonal() -> Figure {
         // A point is a ball of a size that its place resolves.
         let reached = start.z + velocity.z * event.time;
         let radius =
-            if radius > 0.0 { radius } else { carom_geometry::rounding::point_radius(start.coords.amax().max(5.0)) };
+            if radius > 0.0 { radius } else { carom_geometry::rounding::point_radius(start.coords.amax().max(10.0)) };
         worst.of((reached - radius).abs() / (UNIT_ROUNDOFF * start.z));
         bound.keep((reached - radius).abs() <= 4.0 * UNIT_ROUNDOFF * start.z, || {
             format!("from {start:?}: at {reached:e}")
