@@ -118,6 +118,9 @@ impl<'a> Tally<'a> {
             Ending::Completed => return,
             Ending::EventBudget => "event_budget",
             Ending::UnresolvedContact => "unresolved_contact",
+            Ending::UnstableStep => "unstable_step",
+            Ending::StepBudget => "step_budget",
+            Ending::OutOfRange => "out_of_range",
             _ => "other",
         };
         self.ended_early.push(EndedEarly { ball, time: outcome.time, ending });

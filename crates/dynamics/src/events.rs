@@ -67,6 +67,12 @@ pub enum Ending {
     EventBudget,
     /// Contacts kept answering each other without time passing.
     UnresolvedContact,
+    /// The fixed step is too long for the air resistance: the method would make the ball faster where the air slows it.
+    UnstableStep,
+    /// The ball used up its budget of steps.
+    StepBudget,
+    /// The ball has left the range of f64.
+    OutOfRange,
 }
 
 /// A ball at the end of its simulation.

@@ -128,7 +128,9 @@ pub fn slide(
     let step = integrator.step(state, longest, |s| {
         let a = forces.acceleration(s, counters);
         let balance = Balance::of(&a, carriers, s);
-        let direction = s.velocity.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
+        // From a standstill, friction is against where the ball sets out to.
+        let direction = s.velocity.try_normalize(0.0).or_else(|| balance.free.try_normalize(0.0));
+        let direction = direction.unwrap_or_else(Vector3::zeros);
         // What the carriers make of the motion itself: towards the centre of the curve.
         balance.sliding(&direction)
     });

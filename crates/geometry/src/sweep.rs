@@ -165,7 +165,9 @@ impl Mesh {
             if closest.offset.norm() <= reach {
                 let site = match closest.feature {
                     // Rounding found the edge: in a fold that rises towards the ball, it is the face that is touched.
-                    Feature::Edge(edge) if self.rises(face, edge, &closest.offset) => Site::Face(face),
+                    Feature::Edge(edge) if self.rises(face, edge, &closest.offset, radius - tolerance) => {
+                        Site::Face(face)
+                    }
                     Feature::Face => Site::Face(face),
                     // Face before edge before vertex.
                     feature => self.site(face, feature.min(closest_point(&local, &ahead).feature)),
@@ -187,11 +189,11 @@ impl Mesh {
             .collect()
     }
 
-    /// Whether the fold at `edge` of `face` is hollow on the side that `away` points to.
-    fn rises(&self, face: u32, edge: u8, away: &Vector3<f64>) -> bool {
+    /// Whether the fold at `edge` of `face` is hollow on the side that `away` points to, and `away` at least `height` above the face.
+    fn rises(&self, face: u32, edge: u8, away: &Vector3<f64>, height: f64) -> bool {
         let fold = self.fold(face, edge.into());
-        let front = self.normal(face).is_some_and(|n| n.dot(away) >= 0.0);
-        (if front { fold } else { fold.from_back() }) == Fold::Concave
+        let Some(above) = self.normal(face).map(|n| n.dot(away)) else { return false };
+        above.abs() >= height && (if above > 0.0 { fold } else { fold.from_back() }) == Fold::Concave
     }
 
     /// The one name of a feature of `face`.

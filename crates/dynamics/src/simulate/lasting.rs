@@ -7,8 +7,10 @@ use crate::effects::friction::ContactFriction;
 use crate::events::{EventKind, Motion};
 use crate::integrators::{Step, exact};
 use crate::observer::Observer;
+use crate::response::changed_rate;
 use crate::sliding::{Balance, Carrier, Slide, slide};
-use crate::tolerance::{PATIENCE, SLIDING_TOLERANCE, least_hop, rate_rounding};
+use crate::tolerance::{PATIENCE, PATIENCE_WITH_HOPS, SLIDING_TOLERANCE, least_hop, rate_rounding, time_resolution};
+use carom_geometry::rounding::position_bound;
 use carom_geometry::sweep::{Bend, RegionBound};
 use nalgebra::Vector3;
 
@@ -34,7 +36,9 @@ impl<O: Observer> Walk<'_, O> {
                 more |= carrying[i];
                 let c_r = self.plan.surfaces[contact.surface].material.restitution.coefficient();
                 if carrying[i] && contact.rate > 0.0 && c_r < 1.0 {
-                    let seconds = 2.0 * contact.rate / (pressed * (1.0 - c_r));
+                    // Around an edge the way along the surface is no flight: there the hops end at once.
+                    let flat = carrier.bend == Bend::Flat;
+                    let seconds = if flat { 2.0 * contact.rate / (pressed * (1.0 - c_r)) } else { 0.0 };
                     settling = Some(Settling { seconds, closing: contact.rate, contact: i });
                 }
             }
@@ -59,7 +63,11 @@ impl<O: Observer> Walk<'_, O> {
                 contact.rate = 0.0;
             }
         }
+        let before = self.state.velocity;
         self.make_tangential();
+        for contact in self.contacts.iter_mut().filter(|c| !c.lasting) {
+            contact.rate = changed_rate(contact, &before, &self.state.velocity);
+        }
         self.motion = Motion::Sliding;
         self.halvings = 0;
         match settling {
@@ -74,10 +82,12 @@ impl<O: Observer> Walk<'_, O> {
     /// the rest test, for the normal speed; the fourth tells sliding from resting).
     fn ends_bouncing(&mut self, contact: &Contact, pressed: f64) -> bool {
         self.counters.rest += 1;
-        // What loses nothing bounces for ever. An elastic surface with friction loses in a corner, without end.
+        // What loses nothing bounces for ever. The air takes from each hop; an elastic surface with
+        // friction loses in a corner, without end.
         let material = &self.plan.surfaces[contact.surface].material;
         let smooth = material.friction.in_contact() == ContactFriction::Sliding(0.0);
-        let loses = material.restitution.coefficient() < 1.0 || !smooth || self.standstill > PATIENCE;
+        let in_air = !self.forces.are_constant();
+        let loses = material.restitution.coefficient() < 1.0 || !smooth || in_air || self.standstill > PATIENCE;
         let thresholds = self.plan.rest.at(pressed.max(0.0));
         let still = self.state.velocity == Vector3::zeros();
         if contact.rate == 0.0 {
@@ -85,7 +95,12 @@ impl<O: Observer> Walk<'_, O> {
         }
         let hop = contact.rate * contact.rate / (2.0 * pressed);
         let resolved = self.integrator.timestep().map_or(0.0, |h| least_hop(pressed, h));
-        pressed > 0.0 && loses && (contact.rate <= thresholds.speed || hop <= resolved)
+        let hidden = hop <= position_bound(self.plan.farthest.max(self.state.position.coords.amax()));
+        // Nor does one go on whose hops the clock has not resolved for long: what is left of them has a closed form.
+        let brief =
+            self.standstill >= PATIENCE_WITH_HOPS && 2.0 * contact.rate <= pressed * time_resolution(self.clock.now());
+        let over = contact.rate <= thresholds.speed || hop <= resolved;
+        pressed > 0.0 && ((over && (loses || hidden)) || (brief && loses))
     }
 
     /// The contacts as carriers.
@@ -179,6 +194,10 @@ impl<O: Observer> Walk<'_, O> {
         if self.drop_unloaded(&balance) {
             return;
         }
+        if self.settling.is_none() && self.turns_round(&balance) {
+            self.state.velocity = Vector3::zeros();
+            self.contacts.iter_mut().for_each(|c| c.rate = 0.0);
+        }
         let remaining = self.clock.until(self.plan.duration);
         let Slide { step, stops } = match self.settling {
             None => {
@@ -207,6 +226,8 @@ impl<O: Observer> Walk<'_, O> {
         self.hold_to_surface();
         match (hit, exit) {
             (Some(hit), _) => {
+                // Friction at the end of a settling changes the velocity: the path no longer tells it.
+                let step = Step { exact: step.exact && self.settling.is_none(), ..step };
                 self.end_settling();
                 self.arrive(&step, hit, &returns);
             }
@@ -222,6 +243,13 @@ impl<O: Observer> Walk<'_, O> {
             (None, None) if stops => self.state.velocity = Vector3::zeros(),
             (None, None) => {}
         }
+    }
+
+    /// Whether a ball that friction cannot hold is so slow that it stands, before it sets out the other way.
+    fn turns_round(&self, balance: &Balance) -> bool {
+        let v = self.state.velocity;
+        let load: f64 = balance.loads.loads().map(|(_, load)| load).sum();
+        balance.friction > 0.0 && balance.free.dot(&v) < 0.0 && v.norm() <= self.plan.rest.at(load).speed
     }
 
     /// Forgets what the ball touched where it was, but for what it moves along.
