@@ -214,9 +214,13 @@ impl Mesh {
         Site::Vertex { vertex, face: self.vertex_faces(vertex).first().copied().unwrap_or(0) }
     }
 
+    /// The ends of an edge, the one with the lower coordinates first: the same bits from whichever face it is seen, and however that is
+    /// wound.
     fn edge_ends(&self, face: u32, edge: u8) -> [u32; 2] {
         let corners = self.faces()[face as usize];
-        [corners[edge as usize], corners[(edge as usize + 1) % 3]]
+        let [a, b] = [corners[edge as usize], corners[(edge as usize + 1) % 3]];
+        let at = |v: u32| self.vertices()[v as usize];
+        if at(a).coords.as_slice() <= at(b).coords.as_slice() { [a, b] } else { [b, a] }
     }
 
     /// Whether `site` is a part of the border of `other`, which is touched itself.
@@ -269,7 +273,7 @@ impl Mesh {
                     bounds.push(RegionBound { outward: along, point: vertex(b), next: self.vertex_site(b) });
                 }
                 for other in self.faces_at(site) {
-                    let local = (0..3).find(|&i| same_ends(self.edge_ends(other, i), [a, b]));
+                    let local = (0..3).find(|&i| self.edge_ends(other, i) == [a, b]);
                     if let Some(outward) = local.and_then(|i| self.out_of(other, i)) {
                         bounds.push(RegionBound { outward: -outward, point: vertex(a), next: Site::Face(other) });
                     }
@@ -328,10 +332,7 @@ impl Mesh {
             Site::Face(_) => Bend::Flat,
             Site::Edge { face, edge } if self.fold(face, edge.into()) == Fold::Flat => Bend::Flat,
             Site::Edge { face, edge } => {
-                // From the lower vertex to the higher: the same bits from whichever face the edge is seen.
-                let mut ends = self.edge_ends(face, edge);
-                ends.sort_unstable();
-                let [a, b] = ends.map(|v| self.vertices()[v as usize]);
+                let [a, b] = self.edge_ends(face, edge).map(|v| self.vertices()[v as usize]);
                 match (b - a).try_normalize(0.0) {
                     Some(along) => Bend::Around { point: a, along },
                     None => Bend::About { point: a },
@@ -401,8 +402,4 @@ impl Bend {
             Bend::About { .. } => *v,
         }
     }
-}
-
-fn same_ends(a: [u32; 2], b: [u32; 2]) -> bool {
-    a == b || a == [b[1], b[0]]
 }
