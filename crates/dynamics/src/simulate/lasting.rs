@@ -8,7 +8,7 @@ use crate::events::{EventKind, Motion};
 use crate::integrators::{Step, exact};
 use crate::observer::Observer;
 use crate::response::changed_rate;
-use crate::sliding::{Balance, Carrier, Slide, slide};
+use crate::sliding::{Balance, Carrier, Slide, is_lifted, slide};
 use crate::tolerance::{PATIENCE, PATIENCE_WITH_HOPS, SLIDING_TOLERANCE, least_hop, rate_rounding, time_resolution};
 use carom_geometry::rounding::position_bound;
 use carom_geometry::sweep::{Bend, RegionBound};
@@ -198,7 +198,7 @@ impl<O: Observer> Walk<'_, O> {
             self.state.velocity = Vector3::zeros();
         }
         let remaining = self.clock.until(self.plan.duration);
-        let Slide { step, stops } = match self.settling {
+        let Slide { mut step, stops } = match self.settling {
             None => {
                 let slider = &mut self.slider;
                 slide(slider, &self.forces, &self.state, &carriers, &balance, remaining, &mut self.counters)
@@ -212,12 +212,14 @@ impl<O: Observer> Walk<'_, O> {
             }
         };
         let motion = if self.settling.is_some() { Motion::Flying } else { Motion::Sliding };
+        let off = self.settling.is_none().then(|| self.lift_off(&step, &carriers)).flatten();
+        step.to = off.unwrap_or(step.to);
         let exit = self.exit(&step);
         let returns = self.obstacles.returns(&step, &self.contacts, &mut self.counters);
         let hit = self.obstacles.earliest(&step, &self.contacts, &returns, &mut self.counters);
         let hit = hit.filter(|hit| exit.is_none_or(|(f, ..)| hit.f < f));
         let to = hit.map(|hit| hit.f).or(exit.map(|(f, ..)| f)).unwrap_or(step.to);
-        let whole = hit.is_none() && exit.is_none() && !stops && step.time(step.to) >= remaining;
+        let whole = hit.is_none() && exit.is_none() && off.is_none() && !stops && step.time(step.to) >= remaining;
         self.travel(&step, to, motion, whole.then_some(self.plan.duration));
         if to > 0.0 {
             self.leave_behind();
@@ -239,6 +241,7 @@ impl<O: Observer> Walk<'_, O> {
                     self.end_settling();
                 }
             }
+            (None, None) if off.is_some() => self.set_flying(true),
             (None, None) if stops => self.state.velocity = Vector3::zeros(),
             (None, None) => {}
         }
@@ -249,6 +252,28 @@ impl<O: Observer> Walk<'_, O> {
         let v = self.state.velocity;
         let load: f64 = balance.loads.loads().map(|(_, load)| load).sum();
         balance.friction > 0.0 && balance.free.dot(&v) < 0.0 && v.norm() <= self.plan.rest.at(load).speed
+    }
+
+    /// Where in `step` the last of `carriers` stops carrying: the ball leaves an edge too fast for its curve, or the air lifts it.
+    fn lift_off(&mut self, step: &Step, carriers: &[Carrier]) -> Option<f64> {
+        if self.forces.are_constant() && carriers.iter().all(|c| c.bend == Bend::Flat) {
+            return None;
+        }
+        let mut lifted = |f: f64| {
+            let state = step.at(f);
+            is_lifted(&self.forces.acceleration(&state, &mut self.counters), carriers, &state)
+        };
+        if !lifted(step.to) {
+            return None;
+        }
+        let (mut on, mut off) = (0.0, step.to);
+        loop {
+            let middle = 0.5 * (on + off);
+            if middle <= on || middle >= off {
+                return Some(off);
+            }
+            if lifted(middle) { off = middle } else { on = middle }
+        }
     }
 
     /// Forgets what the ball touched where it was, but for what it moves along.
