@@ -90,8 +90,9 @@ impl Worst {
         let error = (value - right).abs();
         let ratio = if error == 0.0 { 0.0 } else { error / bound };
         // An error that is not a number is the worst.
-        if !(ratio <= self.ratio) {
-            self.ratio = if ratio.is_nan() { f64::INFINITY } else { ratio };
+        let ratio = if ratio.is_nan() { f64::INFINITY } else { ratio };
+        if ratio > self.ratio {
+            self.ratio = ratio;
             self.at = format!("{value:e}, should be {right:e}, off by {error:.1e} of {bound:.1e}, {}", place());
         }
     }

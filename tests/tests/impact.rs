@@ -1,4 +1,4 @@
-//! The chapter's loop, row by row: an instant, three stages, the earliest f, sub-steps, and nothing that was not asked for.
+//! The loop of the chapter, row by row: an instant, three stages, the earliest f, sub-steps, and nothing not asked for.
 
 use carom_dynamics::body::Ball;
 use carom_dynamics::clock::Clock;

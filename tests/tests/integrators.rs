@@ -85,7 +85,8 @@ fn errors(method: Method) -> [f64; 4] {
 
 #[test]
 fn r26_the_order_of_each_method_with_an_impact_on_the_way() {
-    let methods: [(&str, f64, f64, fn(f64) -> Method); 3] = [
+    type Stepping = fn(f64) -> Method;
+    let methods: [(&str, f64, f64, Stepping); 3] = [
         ("euler", 1.0, 1.0 / 32.0, |step| Method::Euler { step }),
         ("semi-implicit-euler", 1.0, 1.0 / 32.0, |step| Method::SemiImplicitEuler { step }),
         ("rk4", 4.0, 1.0 / 4.0, |step| Method::Rk4 { step }),
@@ -129,7 +130,7 @@ fn r26_in_vacuum_all_but_eulers_methods_are_exact_to_rounding() {
 
 #[test]
 fn r10_steps_end_at_n_h_also_after_impacts() {
-    // A nominal 3 s at h = 0.1 with many hits: the published loop, which does not reset its timestep, makes 3.27 s of it.
+    // A nominal 3 s at h = 0.1 with many hits: the published loop, which does not reset its timestep, makes 3.27 s of it
     for method in [Method::Euler { step: 0.1 }, Method::SemiImplicitEuler { step: 0.1 }, Method::Rk4 { step: 0.1 }] {
         let stage = Stage::new(3.0).down(G).room(smooth(1.0), [99.0, 99.0, 2.0]);
         let stage = stage.ball([9.0, 9.0, 1.0], [1.0, 0.0, -7.0], 0.0);

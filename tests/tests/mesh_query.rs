@@ -131,6 +131,14 @@ fn h06_ties_between_neighbours_go_to_the_lowest_face() {
 }
 
 /// What of the mesh is within `reach` of `centre`, each place once, by asking every face; and nothing that is the border of another.
+fn distance_by_brute_force(mesh: &Mesh, centre: &Point3<f64>) -> f64 {
+    let distance = |face: u32| {
+        let local = mesh.triangle(face).map(|v| Point3::from(v - centre));
+        closest_point(&local, &Point3::origin()).offset.norm()
+    };
+    (0..mesh.faces().len() as u32).map(distance).fold(f64::INFINITY, f64::min)
+}
+
 fn touched_by_brute_force(mesh: &Mesh, centre: &Point3<f64>, reach: f64) -> BTreeSet<Site> {
     let mut sites = BTreeSet::new();
     for face in 0..mesh.faces().len() as u32 {
@@ -166,13 +174,16 @@ fn h28_touches_are_those_of_brute_force() {
     for (name, text) in SCENES {
         let mesh = scene(text);
         let size = mesh.bounds().extent().amax();
-        let (mut touching, mut several) = (0, 0);
+        let mut touching = 0;
         for _ in 0..(600_000 / mesh.faces().len()).clamp(40, 2000) {
             let face = random.below(mesh.faces().len()) as u32;
             let corners = mesh.triangle(face);
             let on = if random.below(4) == 0 { corners[random.below(3)] } else { random.in_triangle(&corners) };
-            let (radius, tolerance) = (size * random.octave(-12, -2), size * random.octave(-40, -6));
-            let centre = on + random.vector(1.0).normalize() * (radius * random.within(0.5, 1.1));
+            // As a hit leaves it: at the distance of the mesh, but for rounding.
+            let centre = on + random.vector(1.0).normalize() * (size * random.octave(-12, -2));
+            let distance = distance_by_brute_force(&mesh, &centre);
+            let radius = distance * (1.0 + f64::from(random.below(5) as u32) * UNIT_ROUNDOFF);
+            let tolerance = radius * random.octave(-46, -40);
             let touches = mesh.touches(&centre, &nalgebra::Vector3::zeros(), radius, tolerance, &mut Work::default());
             let sites: Vec<Site> = touches.iter().map(|touch| touch.site).collect();
             let want: Vec<Site> = touched_by_brute_force(&mesh, &centre, radius + tolerance).into_iter().collect();
@@ -183,10 +194,9 @@ fn h28_touches_are_those_of_brute_force() {
                 assert!(touch.normal.dot(&(centre - foot)) > 0.0, "{touch:?} points away from the ball");
             }
             touching += usize::from(!sites.is_empty());
-            several += usize::from(sites.len() > 1);
         }
-        println!("{name}: {touching} balls touch it, {several} of them in several places");
-        assert!(touching > 10 && several > 0);
+        println!("{name}: {touching} balls touch it");
+        assert!(touching > 10);
     }
 }
 

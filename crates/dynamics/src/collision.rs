@@ -10,6 +10,7 @@ use arrayvec::ArrayVec;
 use carom_geometry::clearance::{Clearance, Entry};
 use carom_geometry::contact::{Hold, MovingBall};
 use carom_geometry::plane::Side;
+use carom_geometry::rounding::contact_doubt;
 use carom_geometry::sweep::{Bend, RegionBound, Work};
 use nalgebra::{Point3, Vector3};
 
@@ -223,6 +224,14 @@ impl<'a> Obstacles<'a> {
             }
         }
         earliest
+    }
+
+    /// How far from touching the ball may be at `hit`, by the rounding of the search that found it: it grows with the face.
+    pub fn doubt(&self, step: &Step, hit: &Hit) -> f64 {
+        let Some((face, mesh)) = hit.face.zip(self.mesh(hit.surface)) else { return 0.0 };
+        let corners = mesh.triangle(face).map(|v| (v - step.path.start()).amax());
+        let size = corners.into_iter().fold(self.mesh_radius, f64::max);
+        contact_doubt(size + step.path.reach(hit.f))
     }
 
     /// The contacts of a ball at `position` with `velocity`, to within `tolerance` (m), each with its rate n.v.

@@ -6,7 +6,7 @@
 //! was, so the answer is never late; doubt within the rounding bound is a hit. (Conservative advancement: Mirtich 1996; the
 //! support plane makes it exact for a face and quadratically convergent for edges and vertices.)
 
-use crate::clearance::{Clearance, Entry};
+use crate::clearance::Entry;
 use crate::closest::{Feature, closest_point};
 use crate::path::Path;
 use crate::rounding::{UNIT_ROUNDOFF, contact_bound, hold_bound};
@@ -54,9 +54,8 @@ pub struct MovingBall<'a> {
 pub enum Contact {
     /// No contact in [0, to]: certified by a plane.
     Miss,
-    /// First contact at `f`: the ball is at most [`contact_doubt`](crate::rounding::contact_doubt) from touching there, and on an
-    /// edge or a vertex it has not touched before. On a face f is the entry into the face's own plane, to the rounding of its
-    /// equation: the ball may overlap by one [`contact_bound`].
+    /// First contact at `f`: within one [`contact_bound`] of touching there, and never deeper before. A graze in doubt, which rounding
+    /// keeps from touching, is reported where it is nearest, at most [`contact_doubt`](crate::rounding::contact_doubt) away.
     At {
         /// Where on the path.
         f: f64,
@@ -103,12 +102,7 @@ pub(crate) fn contact_from(
             return Contact::Miss;
         }
         *rounds += 1;
-        let centre = path.displacement(f);
-        let closest = closest_point(&corners, &Point3::from(centre));
-        let away = closest.offset;
-        let distance = away.norm();
-        let normal = if distance > 0.0 { away / distance } else { escape_direction(&corners, path, f) };
-        let gap = -farthest_along(&corners, &normal) - ball.radius;
+        let Support { normal, gap, feature } = Support::at(ball, &corners, f);
         // Never late: the plane is moved towards the ball by the bound that holds where the path meets it.
         let mut bound = 2.0 * bound_at(f);
         let mut entry = path.clearance(gap - bound, &normal).first_entry(f, end);
@@ -124,15 +118,35 @@ pub(crate) fn contact_from(
         let plane = path.clearance(gap, &normal);
         let touching = plane.at(f) <= 2.0 * bound && plane.rate(f) < 0.0;
         if touching || next - f <= 2.0 * UNIT_ROUNDOFF * f {
-            return Contact::At { f: polish(&plane, f, end, closest.feature), feature: closest.feature };
+            return Contact::At { f: polish(ball, &corners, f, end, rounds), feature };
         }
         f = next;
     }
     if f > to {
         return Contact::Miss;
     }
-    let closest = closest_point(&corners, &Point3::from(path.displacement(f)));
-    Contact::At { f, feature: closest.feature }
+    Contact::At { f, feature: Support::at(ball, &corners, f).feature }
+}
+
+/// A support plane of a triangle, from the start of the path.
+struct Support {
+    /// Unit normal towards the ball.
+    normal: Vector3<f64>,
+    /// The distance between plane and ball at the start.
+    gap: f64,
+    /// What of the triangle is closest to the ball.
+    feature: Feature,
+}
+
+impl Support {
+    /// The plane that faces the ball at `f`.
+    fn at(ball: &MovingBall, corners: &[Point3<f64>; 3], f: f64) -> Self {
+        let closest = closest_point(corners, &Point3::from(ball.path.displacement(f)));
+        let (away, distance) = (closest.offset, closest.offset.norm());
+        let normal = if distance > 0.0 { away / distance } else { escape_direction(corners, ball.path, f) };
+        let gap = -farthest_along(corners, &normal) - ball.radius;
+        Self { normal, gap, feature: closest.feature }
+    }
 }
 
 /// How far the triangle reaches along `normal`, from the start of the path.
@@ -141,12 +155,25 @@ fn farthest_along(corners: &[Point3<f64>; 3], normal: &Vector3<f64>) -> f64 {
     a.max(b).max(c)
 }
 
-/// On a face the support plane is the face's own, so its entry without the bound is the contact to a few roundoffs.
-fn polish(plane: &Clearance, f: f64, to: f64, feature: Feature) -> f64 {
-    match (feature, plane.first_entry(f, to)) {
-        (Feature::Face, Entry::At { f, .. }) => f,
-        _ => f,
+/// Support planes looked at to polish a contact: from within its bound, a graze comes nearer by a factor of 4 with each.
+const MAX_POLISH: u32 = 8;
+
+/// From `f`, where the ball touches to within the bound, to where it touches: support planes again, now where they are. The triangle
+/// is behind them all the same, so this ends at the contact to the rounding of the planes: on a face at once, at an edge or a vertex in
+/// a step or two of Newton's method.
+fn polish(ball: &MovingBall, corners: &[Point3<f64>; 3], f: f64, to: f64, rounds: &mut u64) -> f64 {
+    let mut f = f;
+    for _ in 0..MAX_POLISH {
+        let Support { normal, gap, feature } = Support::at(ball, corners, f);
+        *rounds += 1;
+        let Entry::At { f: next, .. } = ball.path.clearance(gap, &normal).first_entry(f, to) else { break };
+        let arrived = next - f <= 2.0 * UNIT_ROUNDOFF * f || feature == Feature::Face;
+        f = next;
+        if arrived {
+            break;
+        }
     }
+    f
 }
 
 /// Where to look when the centre lies on the triangle: across the face, to the side the ball moves to.

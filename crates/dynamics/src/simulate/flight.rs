@@ -55,7 +55,7 @@ impl<O: Observer> Walk<'_, O> {
 
     /// At a collision: what is touched, how fast, and the answer.
     pub(super) fn arrive(&mut self, step: &Step, hit: Hit, returns: &Returns) {
-        let tolerance = self.touch_tolerance(step.path.reach(hit.f));
+        let tolerance = self.touch_tolerance(step.path.reach(hit.f)).max(self.obstacles.doubt(step, &hit));
         let before = std::mem::take(&mut self.contacts);
         let mut contacts =
             self.obstacles.touching(&self.state.position, &self.state.velocity, tolerance, &mut self.counters);

@@ -196,6 +196,7 @@ impl<O: Observer> Walk<'_, O> {
         }
         if self.settling.is_none() && self.turns_round(&balance) {
             self.state.velocity = Vector3::zeros();
+            self.contacts.iter_mut().for_each(|c| c.rate = 0.0);
         }
         let remaining = self.clock.until(self.plan.duration);
         let Slide { mut step, stops } = match self.settling {
