@@ -1,7 +1,7 @@
 //! What the cross-crate tests share.
 
-pub mod checker;
 pub mod catalogue;
+pub mod checker;
 pub mod data;
 pub mod exact;
 pub mod grid;

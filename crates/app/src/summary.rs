@@ -118,6 +118,8 @@ impl<'a> Tally<'a> {
             Ending::Completed => return,
             Ending::EventBudget => "event_budget",
             Ending::UnresolvedContact => "unresolved_contact",
+            Ending::UnstableStep => "unstable_step",
+            Ending::StepBudget => "step_budget",
             Ending::Diverged => "diverged",
             _ => "other",
         };

@@ -24,6 +24,10 @@ pub enum EventKind {
     UnresolvedContact,
     /// The simulation of the ball was ended: its next step has no finite numbers.
     Diverged,
+    /// The simulation of the ball was ended: the fixed step is too long for the air resistance.
+    UnstableStep,
+    /// The simulation of the ball was ended: its budget of steps is used up.
+    StepBudget,
 }
 
 /// One event of one ball at one surface. A simultaneous impact at several surfaces is one event for each, at one time and
@@ -69,6 +73,10 @@ pub enum Ending {
     EventBudget,
     /// Contacts kept answering each other without time passing.
     UnresolvedContact,
+    /// The fixed step is too long for the air resistance: the method would make the ball faster where the air slows it.
+    UnstableStep,
+    /// The ball used up its budget of steps.
+    StepBudget,
     /// The next step has no finite numbers: the timestep is too long for the forces, or the motion left the range of f64. The state is
     /// the last finite one.
     Diverged,

@@ -8,7 +8,9 @@ use crate::integrators::adaptive::Adaptive;
 use crate::integrators::{Integrator, Stepping};
 use crate::scene::{Method, Scene};
 use crate::surface::{Material, Shape};
-use crate::tolerance::{FLIGHT_TOLERANCE, LEAST_TOLERANCE, RestThresholds, TOLERANCE_RANGE, default_rest_length};
+use crate::tolerance::{
+    FLIGHT_TOLERANCE, LEAST_TOLERANCE, RestThresholds, STEP_BUDGET, TOLERANCE_RANGE, default_rest_length,
+};
 use carom_geometry::bounds::Aabb;
 use carom_geometry::mesh::Mesh;
 use carom_geometry::plane::Plane;
@@ -155,6 +157,8 @@ fn method(scene: &Scene, flows: &[Arc<dyn Flow>]) -> Result<Method, SceneError> 
         Method::Exact => {}
         Method::Euler { step } | Method::SemiImplicitEuler { step } | Method::Rk4 { step } => {
             positive("step", step, "finite and > 0, in s")?;
+            let enough = scene.duration / step <= STEP_BUDGET as f64;
+            require("step", step, "no less than a 10 000 000 000th of the duration, in s", enough)?;
         }
         Method::Adaptive { tolerance } => {
             require("tolerance", tolerance, TOLERANCE_RANGE, (LEAST_TOLERANCE..=1.0).contains(&tolerance))?;

@@ -41,12 +41,16 @@ fn respond_to_one(
     let hit = contacts.iter().position(|c| c.rate < 0.0)?;
     let (n, closing) = (contacts[hit].normal, -contacts[hit].rate);
     let c_r = materials[hit].restitution.coefficient();
-    let v_t = v - n * n.dot(&v);
+    // A rounded unit normal is off by the same u at each of a million bounces: divided by its square, it is not.
+    let square = n.norm_squared();
+    let v_t = v - n * (n.dot(&v) / square);
     let rebound = materials[hit].restitution.rebound(closing);
     let friction = &materials[hit].friction;
-    let mut after = slowed(friction, v_t, closing, c_r, counters) + n * rebound;
-    // Rounding, of the normal's length too, must not gain energy; nor lose it where nothing does.
-    let (had, has) = (v.norm_squared(), after.norm_squared());
+    let mut after = slowed(friction, v_t, closing, c_r, counters) + n * (rebound / square);
+    // Rounding must not gain energy; nor lose it where nothing does.
+    // In units of the largest component: squares of small speeds vanish.
+    let unit = v.amax();
+    let (had, has) = ((v / unit).norm_squared(), (after / unit).norm_squared());
     if has > had || (c_r == 1.0 && *friction == Friction::None) {
         after *= (had / has).sqrt();
     }
@@ -86,7 +90,9 @@ fn respond_to_all(
             after = slowed(&materials[i].friction, after, impulse, c_r, counters);
         }
         if bounces {
-            for (i, impulse) in projection.loads() {
+            let lost =
+                |i: usize| projection.loads().any(|(j, _)| i != j && collapse_in_between(i, j, contacts, materials));
+            for (i, impulse) in projection.loads().filter(|(i, _)| !lost(*i)) {
                 counters.restitution += 1;
                 after += contacts[i].normal * materials[i].restitution.rebound(impulse);
             }
@@ -110,6 +116,32 @@ fn respond_to_all(
         contact.rate = contact.rate.max(0.0);
     }
     v
+}
+
+/// Whether a point between contacts `i` and `j` hits them without end, so that nothing comes back from the two together.
+///
+/// The velocity goes through the product of two maps 1 - (1 + c_r) n n^T, with determinant c_i c_j and trace (1 + c_i)(1 + c_j)
+/// cos^2 - c_i - c_j across the edge; it turns round only if its eigenvalues are not real, that is unless
+/// (1 + c_i)(1 + c_j) cos^2 >= (sqrt(c_i) + sqrt(c_j))^2. What hits both at once must do what its neighbours do, which hit one first.
+fn collapse_in_between(i: usize, j: usize, contacts: &[Contact], materials: &[Material]) -> bool {
+    let cos = -contacts[i].normal.dot(&contacts[j].normal);
+    let [a, b] = [i, j].map(|k| materials[k].restitution.coefficient());
+    let roots = a.sqrt() + b.sqrt();
+    cos > 0.0 && a * b < 1.0 && (1.0 + a) * (1.0 + b) * cos * cos >= roots * roots
+}
+
+/// The velocity after infinitely many impacts in no time: with c_r < 1 they take all that Moreau's response can take, and leave p.
+///
+/// (Inelastic collapse: a point in a wedge narrower than cos(angle) = 2 sqrt(c_r) / (1 + c_r) hits its sides without end.)
+pub fn collapse(v: Vector3<f64>, contacts: &mut [Contact]) -> Vector3<f64> {
+    let normals: Vec<_> = contacts.iter().map(|c| c.normal).collect();
+    let after = project(&v, &normals).velocity;
+    let rounding = rate_rounding(v.norm());
+    for contact in contacts {
+        let rate = contact.normal.dot(&after);
+        contact.rate = if rate <= rounding { 0.0 } else { rate };
+    }
+    after
 }
 
 /// Friction, where there is any: a surface without it is not asked.

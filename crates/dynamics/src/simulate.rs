@@ -22,7 +22,7 @@ use crate::integrators::adaptive::Adaptive;
 use crate::integrators::{Integrator, Step};
 use crate::observer::{Observer, Segment};
 use crate::plan::Plan;
-use crate::tolerance::{EVENT_BUDGET, MAX_STANDSTILL, SLIDING_TOLERANCE, time_resolution};
+use crate::tolerance::{EVENT_BUDGET, MAX_STANDSTILL, SLIDING_TOLERANCE, STEP_BUDGET, time_resolution};
 use nalgebra::Vector3;
 
 /// Simulates one ball of `plan` to the end and shows it to `observer`.
@@ -43,6 +43,7 @@ pub fn simulate(plan: &Plan, ball: &Ball, observer: &mut impl Observer) -> Outco
         settling: None,
         slider: Adaptive::new(SLIDING_TOLERANCE),
         standstill: 0,
+        answered: Contacts::new(),
         moved: 0.0,
         halvings: 0,
         events: 0,
@@ -55,6 +56,9 @@ pub fn simulate(plan: &Plan, ball: &Ball, observer: &mut impl Observer) -> Outco
             Motion::Flying => walk.fly(),
             Motion::Sliding => walk.slide(),
             Motion::Resting => walk.rest(),
+        }
+        if walk.counters.paths >= STEP_BUDGET && walk.ending.is_none() {
+            walk.give_up(Ending::StepBudget, EventKind::StepBudget);
         }
     }
     Outcome {
@@ -92,6 +96,8 @@ struct Walk<'a, O> {
     slider: Adaptive,
     /// Answers in a row that took no time to speak of.
     standstill: u32,
+    /// What has been touched since time last passed.
+    answered: Contacts,
     /// Since when, in s.
     moved: f64,
     /// How often the timestep is halved because the path closes where the ball does not.

@@ -60,9 +60,9 @@ pub fn project_offset(w: &Vector3<f64>, normals: &[Vector3<f64>], allowed: impl 
         best = (over, Projection { velocity: v, pushing: all, count: pushing.len() });
         (over <= rate_rounding(w.norm() + sum)).then_some(best.1)
     };
-    for i in 0..m {
+    for (i, normal) in normals.iter().enumerate() {
         let load = lack(w, i);
-        if let Some(found) = good(w + normals[i] * load, &[(i, load)]) {
+        if let Some(found) = good(w + normal * load, &[(i, load)]) {
             return found;
         }
     }
@@ -70,11 +70,13 @@ pub fn project_offset(w: &Vector3<f64>, normals: &[Vector3<f64>], allowed: impl 
         for j in i + 1..m {
             let c = normals[i].dot(&normals[j]);
             let Some(inverse) = Matrix2::new(1.0, c, c, 1.0).try_inverse() else { continue };
-            let (mut v, mut load) = (*w, Vector2::zeros());
+            let mut load = Vector2::zeros();
+            let mut v = *w;
             for _ in 0..REFINEMENTS {
                 load += inverse * Vector2::new(lack(&v, i), lack(&v, j));
                 v = w + normals[i] * load.x + normals[j] * load.y;
             }
+            let v = in_groove(w, [&normals[i], &normals[j]], [allowed(i), allowed(j)]);
             if let Some(found) = good(v, &[(i, load.x), (j, load.y)]) {
                 return found;
             }
@@ -99,6 +101,16 @@ pub fn project_offset(w: &Vector3<f64>, normals: &[Vector3<f64>], allowed: impl 
         }
     }
     best.1
+}
+
+/// The vector with n_i.v = -`allowed[i]` for both `normals` that is `w` along their groove.
+///
+/// Put together in the directions of the groove: `w` plus the loads would leave in v the rounding of the loads, which in an acute groove
+/// are much larger than w.
+fn in_groove(w: &Vector3<f64>, normals: [&Vector3<f64>; 2], allowed: [f64; 2]) -> Vector3<f64> {
+    let along = normals[0].cross(normals[1]);
+    let v = along * along.dot(w) - normals[1].cross(&along) * allowed[0] - along.cross(normals[0]) * allowed[1];
+    v / along.norm_squared()
 }
 
 #[cfg(test)]

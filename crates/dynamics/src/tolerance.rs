@@ -123,8 +123,18 @@ pub fn time_resolution(now: f64) -> f64 {
     2048.0 * UNIT_ROUNDOFF * now
 }
 
+/// Hops without time passing before bouncing ends: fewer than [`COLLAPSE_AFTER`], so that what is left of them is summed and not cut.
+pub const PATIENCE_WITH_HOPS: u32 = COLLAPSE_AFTER / 2;
+
+/// Contacts answered without time passing before they are taken to answer each other for ever, so that restitution has lost all that it can
+/// lose. With fewer, what is left of the velocity might still be seen; the run would be ended at [`MAX_STANDSTILL`].
+pub const COLLAPSE_AFTER: u32 = 128;
+
 /// Contacts answered without time passing before the ball's simulation is ended as unresolved.
 pub const MAX_STANDSTILL: u32 = 256;
+
+/// Steps of one ball before its simulation is ended; a fixed timestep that needs more is refused. They take hours.
+pub const STEP_BUDGET: u64 = 10_000_000_000;
 
 /// Contacts answered without time passing before bouncing ends whatever the restitution: hops that f64 does not resolve in time are none.
 pub const PATIENCE: u32 = 16;

@@ -135,23 +135,30 @@ fn closest_in_range(triangle: &[Point3<f64>; 3], x: &Point3<f64>) -> Closest {
     // Triple products, not the differences of products d1 d4 - d3 d2 ... that they equal: those lose the height of a needle.
     let n = frame.normal;
     let inside = |p: &Vector3<f64>, q: &Vector3<f64>| n.dot(&p.cross(q));
-    let along = |origin: &Point3<f64>, p: &Vector3<f64>, edge: &Vector3<f64>, part: f64, feature| {
-        let offset = p - edge * part;
+    // From the end with the lower coordinates and without the third vertex: the same bits from each face that has the edge.
+    let along = |p: &Point3<f64>, q: &Point3<f64>, feature| {
+        let (from, to) = if p.coords.as_slice() <= q.coords.as_slice() { (p, q) } else { (q, p) };
+        let (edge, offset) = (to - from, x - from);
+        let length = edge.norm_squared();
+        if length == 0.0 {
+            return at(*from, offset, feature);
+        }
+        let part = edge.dot(&offset) / length;
+        let offset = offset - edge * part;
         // Once more, for what rounding left along the edge.
-        let rest = edge.dot(&offset) / edge.norm_squared();
-        let (point, offset) = (origin + edge * (part + rest), offset - edge * rest);
-        at(point, offset, feature)
+        let rest = edge.dot(&offset) / length;
+        at(from + edge * (part + rest), offset - edge * rest, feature)
     };
     let (vc, vb, va) = (inside(&ab, &ap), inside(&ap, &ac), inside(&bp, &cp));
     if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 && d1 > d3 {
-        return along(&a, &ap, &ab, d1 / (d1 - d3), frame.edge(0));
+        return along(&a, &b, frame.edge(0));
     }
     if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 && d2 > d6 {
-        return along(&a, &ap, &ac, d2 / (d2 - d6), frame.edge(2));
+        return along(&a, &c, frame.edge(2));
     }
     let (beyond_b, beyond_c) = (d4 - d3, d5 - d6);
     if va <= 0.0 && beyond_b >= 0.0 && beyond_c >= 0.0 && beyond_b + beyond_c > 0.0 {
-        return along(&b, &bp, &(c - b), beyond_b / (beyond_b + beyond_c), frame.edge(1));
+        return along(&b, &c, frame.edge(1));
     }
     let area_squared = n.norm_squared();
     if area_squared > 0.0 {

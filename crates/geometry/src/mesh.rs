@@ -5,6 +5,7 @@ mod topology;
 mod weld;
 
 use nalgebra::{Point3, UnitVector3, Vector3};
+use std::collections::BTreeSet;
 use thiserror::Error;
 
 use crate::bounds::Aabb;
@@ -101,8 +102,9 @@ pub struct Edge {
 ///
 /// Faces and vertices go by their place in the lists it was made of; as with these, a place beyond their end panics. Side
 /// i of a face runs from corner i to corner i + 1. Coordinates are any finite f64, in the user's unit, usually m. Every
-/// set of faces is a mesh: open, with edges of many faces, with faces of no area, wound anyhow. What of this is meant is
-/// the question of [`diagnose`](crate::doctor::diagnose).
+/// set of faces is a mesh: open, with edges of many faces, with faces of no area, wound anyhow. A face with the three corners of an
+/// earlier one adds nothing: no query finds it, and its sides are on no edge. What of this is meant is the question of
+/// [`diagnose`](crate::doctor::diagnose).
 ///
 /// Takes about 100 bytes a face beside the vertices.
 #[derive(Debug, Clone)]
@@ -133,10 +135,10 @@ impl Mesh {
         refuse_errors(&vertices, &faces)?;
         let normal = |f: &[u32; 3]| unit_normal(&corners(&vertices, f)).map_or_else(Vector3::zeros, |n| n.into_inner());
         let mut normals: Vec<_> = faces.iter().map(normal).collect();
-        let mut topology = Topology::of(vertices.len(), &faces);
+        let (mut topology, repeats) = topology_without_repeats(vertices.len(), &faces);
         folds(&mut topology, &vertices, &faces, &normals);
         share_normals(&topology, &mut normals);
-        Ok(Self::assemble(vertices, faces, Normals::Each(normals), topology))
+        Ok(Self::assemble(vertices, faces, Normals::Each(normals), topology, &repeats))
     }
 
     /// Faces that are declared to lie in one plane with the unit `normal`, such as the triangles of a polygon: it is the normal
@@ -158,14 +160,23 @@ impl Mesh {
     }
 
     fn planar(vertices: Vec<Point3<f64>>, faces: Vec<[u32; 3]>, normal: UnitVector3<f64>) -> Self {
-        let mut topology = Topology::of(vertices.len(), &faces);
+        let (mut topology, repeats) = topology_without_repeats(vertices.len(), &faces);
         planar_folds(&mut topology);
-        Self::assemble(vertices, faces, Normals::Shared(normal), topology)
+        Self::assemble(vertices, faces, Normals::Shared(normal), topology, &repeats)
     }
 
-    fn assemble(vertices: Vec<Point3<f64>>, faces: Vec<[u32; 3]>, normals: Normals, topology: Topology) -> Self {
-        let bvh = Bvh::build_by(faces.len(), |f| Aabb::of_points(&corners(&vertices, &faces[f])));
-        let vertex_faces = VertexFaces::of(vertices.len(), &faces);
+    fn assemble(
+        vertices: Vec<Point3<f64>>,
+        faces: Vec<[u32; 3]>,
+        normals: Normals,
+        topology: Topology,
+        repeats: &BTreeSet<u32>,
+    ) -> Self {
+        let bvh = Bvh::build_by(faces.len(), |f| {
+            let box_of = || Aabb::of_points(&corners(&vertices, &faces[f]));
+            if repeats.contains(&(f as u32)) { Aabb::empty() } else { box_of() }
+        });
+        let vertex_faces = VertexFaces::of(vertices.len(), &faces, repeats);
         Self { vertices, faces, normals, topology, vertex_faces, bvh }
     }
 
@@ -228,7 +239,13 @@ impl Mesh {
 
     /// Every edge once, in the order of their owners.
     pub fn edges(&self) -> impl Iterator<Item = Edge> {
-        (0..self.topology.len()).filter(|&h| self.topology.owner(h) == h).map(|h| self.edge(h / 3, (h % 3) as usize))
+        let own = (0..self.topology.len()).filter(|&h| self.topology.owner(h) == h && !self.is_repeat(h / 3));
+        own.map(|h| self.edge(h / 3, (h % 3) as usize))
+    }
+
+    /// Whether an earlier face has the same three corners.
+    fn is_repeat(&self, face: u32) -> bool {
+        !self.vertex_faces(self.faces[face as usize][0]).contains(&face)
     }
 
     /// The other faces at `side` of `face`: one inside a well-formed surface, none at its rim.
@@ -253,6 +270,16 @@ impl Mesh {
         self.vertex_faces.around(vertex)
     }
 
+    /// Whether all faces around a vertex lie in one plane and go all the way round it.
+    pub fn is_level(&self, vertex: u32) -> bool {
+        let ends_here = |face: u32, side: usize| {
+            let corners = self.faces[face as usize];
+            corners[side] == vertex || corners[(side + 1) % 3] == vertex
+        };
+        let level = |face: u32| (0..3).all(|side| !ends_here(face, side) || self.fold(face, side) == Fold::Flat);
+        self.vertex_faces(vertex).iter().all(|&face| level(face))
+    }
+
     /// The memory it takes beside the vertices, in bytes.
     pub fn bytes(&self) -> usize {
         let normals = match &self.normals {
@@ -265,6 +292,14 @@ impl Mesh {
             + self.vertex_faces.bytes()
             + self.bvh.bytes()
     }
+}
+
+/// How the faces hang together when none is there twice, and those that would be.
+fn topology_without_repeats(vertices: usize, faces: &[[u32; 3]]) -> (Topology, BTreeSet<u32>) {
+    let all = Topology::of(vertices, faces);
+    let repeats = all.repeats(faces);
+    let topology = if repeats.is_empty() { all } else { Topology::without(vertices, faces, &repeats) };
+    (topology, repeats)
 }
 
 fn refuse_errors(vertices: &[Point3<f64>], faces: &[[u32; 3]]) -> Result<(), MeshError> {

@@ -196,12 +196,15 @@ impl Mesh {
         above.abs() >= height && (if above > 0.0 { fold } else { fold.from_back() }) == Fold::Concave
     }
 
-    /// The one name of a feature of `face`.
+    /// The one name of what is touched at a feature of `face`.
     fn site(&self, face: u32, feature: Feature) -> Site {
         match feature {
-            Feature::Face => Site::Face(face),
-            Feature::Edge(edge) => self.edge_site(face, edge),
-            Feature::Vertex(corner) => self.vertex_site(self.faces()[face as usize][corner as usize]),
+            Feature::Edge(edge) if self.fold(face, edge.into()) != Fold::Flat => self.edge_site(face, edge),
+            Feature::Vertex(corner) if !self.is_level(self.faces()[face as usize][corner as usize]) => {
+                self.vertex_site(self.faces()[face as usize][corner as usize])
+            }
+            // A border inside a plane is none.
+            Feature::Face | Feature::Edge(_) | Feature::Vertex(_) => Site::Face(face),
         }
     }
 
@@ -214,9 +217,13 @@ impl Mesh {
         Site::Vertex { vertex, face: self.vertex_faces(vertex).first().copied().unwrap_or(0) }
     }
 
+    /// The ends of an edge, the one with the lower coordinates first: the same bits from whichever face it is seen, and however that is
+    /// wound.
     fn edge_ends(&self, face: u32, edge: u8) -> [u32; 2] {
         let corners = self.faces()[face as usize];
-        [corners[edge as usize], corners[(edge as usize + 1) % 3]]
+        let [a, b] = [corners[edge as usize], corners[(edge as usize + 1) % 3]];
+        let at = |v: u32| self.vertices()[v as usize];
+        if at(a).coords.as_slice() <= at(b).coords.as_slice() { [a, b] } else { [b, a] }
     }
 
     /// Whether `site` is a part of the border of `other`, which is touched itself.
@@ -269,7 +276,7 @@ impl Mesh {
                     bounds.push(RegionBound { outward: along, point: vertex(b), next: self.vertex_site(b) });
                 }
                 for other in self.faces_at(site) {
-                    let local = (0..3).find(|&i| same_ends(self.edge_ends(other, i), [a, b]));
+                    let local = (0..3).find(|&i| self.edge_ends(other, i) == [a, b]);
                     if let Some(outward) = local.and_then(|i| self.out_of(other, i)) {
                         bounds.push(RegionBound { outward: -outward, point: vertex(a), next: Site::Face(other) });
                     }
@@ -328,10 +335,7 @@ impl Mesh {
             Site::Face(_) => Bend::Flat,
             Site::Edge { face, edge } if self.fold(face, edge.into()) == Fold::Flat => Bend::Flat,
             Site::Edge { face, edge } => {
-                // From the lower vertex to the higher: the same bits from whichever face the edge is seen.
-                let mut ends = self.edge_ends(face, edge);
-                ends.sort_unstable();
-                let [a, b] = ends.map(|v| self.vertices()[v as usize]);
+                let [a, b] = self.edge_ends(face, edge).map(|v| self.vertices()[v as usize]);
                 match (b - a).try_normalize(0.0) {
                     Some(along) => Bend::Around { point: a, along },
                     None => Bend::About { point: a },
@@ -401,8 +405,4 @@ impl Bend {
             Bend::About { .. } => *v,
         }
     }
-}
-
-fn same_ends(a: [u32; 2], b: [u32; 2]) -> bool {
-    a == b || a == [b[1], b[0]]
 }

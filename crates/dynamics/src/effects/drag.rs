@@ -68,6 +68,10 @@ impl Flow for Drag {
         relative * (-force_per_speed / ball.mass().unwrap_or(f64::INFINITY))
     }
 
+    fn calms_to(&self) -> Option<Vector3<f64>> {
+        Some(self.wind)
+    }
+
     fn count(&self, counters: &mut Counters) {
         counters.drag += 1;
     }

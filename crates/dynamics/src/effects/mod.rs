@@ -19,6 +19,9 @@ pub trait Flow: std::fmt::Debug + Send + Sync {
     /// Its share of the acceleration of `ball` in `state`, in m/s^2.
     fn acceleration(&self, state: &State, ball: &Ball) -> Vector3<f64>;
 
+    /// The velocity in m/s towards which it drives a ball, and never away from it; none if it is no resistance.
+    fn calms_to(&self) -> Option<Vector3<f64>>;
+
     /// Adds one evaluation to its count.
     fn count(&self, counters: &mut Counters);
 }

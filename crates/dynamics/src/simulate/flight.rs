@@ -2,12 +2,12 @@
 
 use super::Walk;
 use crate::collision::{Hit, Returns};
-use crate::contacts::Contact;
-use crate::events::{EventKind, Motion};
+use crate::contacts::{Contact, Contacts};
+use crate::events::{Ending, EventKind, Motion};
 use crate::integrators::Step;
 use crate::observer::Observer;
-use crate::response::respond;
-use crate::tolerance::{rate_rounding, touch_distance};
+use crate::response::{collapse, respond};
+use crate::tolerance::{COLLAPSE_AFTER, rate_rounding, touch_distance};
 use carom_geometry::clearance::Entry;
 
 impl<O: Observer> Walk<'_, O> {
@@ -22,7 +22,7 @@ impl<O: Observer> Walk<'_, O> {
         let rounding = rate_rounding(self.state.velocity.norm());
         let tangential = self.contacts.iter().any(|c| c.rate <= rounding);
         let step = self.integrator.step(&self.forces, &self.state, timestep, tangential, &mut self.counters);
-        if self.diverges(&step) {
+        if self.diverges(&step) || self.is_unstable(&step) {
             return;
         }
         let returns = self.obstacles.returns(&step, &self.contacts, &mut self.counters);
@@ -41,6 +41,20 @@ impl<O: Observer> Walk<'_, O> {
         }
     }
 
+    /// Whether a step of fixed length leaves the ball faster in the air than it can be, which ends its simulation: resistance takes from the speed v - w, and what does not
+    /// change adds |a| h at most. (Euler's methods are stable up to k h / m = 2 with linear drag, Runge and Kutta's up to 2.785.)
+    fn is_unstable(&mut self, step: &Step) -> bool {
+        let [flow] = self.forces.flows else { return false };
+        let Some(calm) = flow.calms_to().filter(|_| self.integrator.timestep().is_some()) else { return false };
+        let before = (self.state.velocity - calm).norm() + self.forces.constant.norm() * step.time(step.to);
+        let after = (step.end().velocity - calm).norm();
+        let unstable = after > before + rate_rounding(before);
+        if unstable {
+            self.give_up(Ending::UnstableStep, EventKind::UnstableStep);
+        }
+        unstable
+    }
+
     /// At a collision: what is touched, how fast, and the answer.
     pub(super) fn arrive(&mut self, step: &Step, hit: Hit, returns: &Returns) {
         let tolerance = self.touch_tolerance(step.path.reach(hit.f)).max(self.obstacles.doubt(step, &hit));
@@ -51,6 +65,7 @@ impl<O: Observer> Walk<'_, O> {
             self.correct(contact, tolerance);
             contact.rate = self.rate(step, hit, contact, &before, returns);
         }
+        let collapses = self.collapses(&mut contacts);
         let carried = |c: &Contact| before.iter().any(|b| b.lasting && b.surface == c.surface && b.site == c.site);
         if let Some(contact) = contacts.iter().find(|c| c.rate < 0.0)
             && step.exact
@@ -63,7 +78,11 @@ impl<O: Observer> Walk<'_, O> {
         if closing.contains(&true) {
             let materials: Vec<_> = contacts.iter().map(|c| self.plan.surfaces[c.surface].material).collect();
             let velocity_in = self.state.velocity;
-            self.state.velocity = respond(velocity_in, &mut contacts, &materials, &mut self.counters);
+            self.state.velocity = if collapses {
+                collapse(velocity_in, &mut contacts)
+            } else {
+                respond(velocity_in, &mut contacts, &materials, &mut self.counters)
+            };
             self.counters.impacts += 1;
             self.halvings = 0;
             for (contact, _) in contacts.iter().zip(&closing).filter(|(_, closing)| **closing) {
@@ -83,11 +102,37 @@ impl<O: Observer> Walk<'_, O> {
         }
     }
 
+    /// Whether contacts that lose energy have answered each other without time passing for so long that there is no end to it; then
+    /// `contacts` are all that took part.
+    fn collapses(&mut self, contacts: &mut Contacts) -> bool {
+        if self.standstill == 0 {
+            self.answered.clear();
+        }
+        let place = |c: &Contact| (c.surface, c.site);
+        for c in contacts.iter() {
+            if !self.answered.is_full() && self.answered.iter().all(|a| place(a) != place(c)) {
+                self.answered.push(*c);
+            }
+        }
+        let loses = |c: &Contact| self.plan.surfaces[c.surface].material.restitution.coefficient() < 1.0;
+        if self.standstill < COLLAPSE_AFTER || !self.answered.iter().any(loses) {
+            return false;
+        }
+        for a in &self.answered {
+            if !contacts.is_full() && contacts.iter().all(|c| place(a) != place(c)) {
+                contacts.push(Contact { rate: a.normal.dot(&self.state.velocity), lasting: false, ..*a });
+            }
+        }
+        contacts.sort_by_key(|c| (self.plan.surfaces[c.surface].rank, c.site));
+        true
+    }
+
     /// What counts as touching here.
     pub(super) fn touch_tolerance(&self, travelled: f64) -> f64 {
         let here = self.state.position.coords.amax().max(self.forces.ball.radius());
-        // Contact with a face is found to the rounding of its corners as well.
-        touch_distance(here + self.plan.farthest, travelled)
+        // Contact with a face is found to the rounding of its corners as well; planes have none.
+        let corners = if self.plan.meshes.is_empty() { 0.0 } else { self.plan.farthest };
+        touch_distance(here + corners, travelled)
     }
 
     /// Puts the centre back onto the surface it touches, within the rounding bound of its position (R15: explicit, bounded, counted).

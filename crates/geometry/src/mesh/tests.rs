@@ -74,13 +74,30 @@ fn a_face_of_no_area_has_no_normal_and_does_no_harm() {
     let m = Mesh::new(vertices, faces).unwrap();
     let with_normal: Vec<_> = (0..5).filter(|&f| m.normal(f).is_some()).collect();
     assert_eq!(with_normal, [4]);
-    assert_eq!(m.vertex_faces(0), [0, 1, 3, 4]);
+    // Face 3 has the corners of face 1.
+    assert_eq!(m.vertex_faces(0), [0, 1, 4]);
     assert_eq!(m.vertex_faces(3), [2, 4]);
     for f in 0..5 {
         for side in 0..3 {
             assert!(matches!(m.fold(f, side), Fold::Rim | Fold::NonManifold));
         }
     }
+}
+
+#[test]
+fn h08_a_face_that_is_there_twice_adds_nothing() {
+    let once = hinge([1.0, 0.0, 0.5], [1, 0, 3]);
+    let again = [once.faces(), &[[1, 2, 0], [0, 2, 1], [0, 1, 3]]].concat();
+    let m = Mesh::new(once.vertices().to_vec(), again).unwrap();
+    assert_eq!(m.fold(0, 0), once.fold(0, 0));
+    assert_eq!(m.neighbours(0, 0).collect::<Vec<_>>(), [1]);
+    assert_eq!(m.neighbours(2, 0).count(), 0);
+    assert_eq!(m.vertex_faces(0), [0, 1]);
+    assert!(m.edges().eq(once.edges()));
+    let mut seen = Vec::new();
+    m.bvh().visit_box(m.bounds(), |face| seen.push(face));
+    seen.sort_unstable();
+    assert_eq!(seen, [0, 1]);
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Which sides of faces lie on the same edge, and which faces lie around a vertex.
 
 use super::fold::Fold;
+use std::collections::BTreeSet;
 
 /// For each half-edge, that is side i of face f under the number 3 f + i, the next one on the same edge, in ascending
 /// order and from the last back to the first; and its fold.
@@ -17,11 +18,17 @@ impl Topology {
     /// For faces whose indices are all below `vertices`, and at most [`MOST_FACES`](super::MOST_FACES); every fold is
     /// still [`Fold::Rim`].
     pub(crate) fn of(vertices: usize, faces: &[[u32; 3]]) -> Self {
+        Self::without(vertices, faces, &BTreeSet::new())
+    }
+
+    /// Of all faces but some, whose sides lie on no edge with others.
+    pub(super) fn without(vertices: usize, faces: &[[u32; 3]], left_out: &BTreeSet<u32>) -> Self {
         // Half-edges by their lower vertex, and then sorted by the other: everything stays near what it belongs to.
         let count = 3 * faces.len() as u32;
         let ends = |h: u32| ends(faces, h);
-        let by_vertex = Buckets::of(vertices, (0..count).map(|h| (ends(h)[0].min(ends(h)[1]), h)));
-        let mut links = vec![0; count as usize];
+        let kept = (0..count).filter(|h| !left_out.contains(&(h / 3)));
+        let by_vertex = Buckets::of(vertices, kept.map(|h| (ends(h)[0].min(ends(h)[1]), h)));
+        let mut links: Vec<u32> = (0..count).map(|h| h | Fold::Rim.bits() << FOLD_SHIFT).collect();
         let mut around = Vec::new();
         for vertex in 0..vertices {
             around.clear();
@@ -35,6 +42,20 @@ impl Topology {
             }
         }
         Self { links }
+    }
+
+    /// The faces that have the corners of an earlier one, in whatever order.
+    pub(super) fn repeats(&self, faces: &[[u32; 3]]) -> BTreeSet<u32> {
+        let corners = |face: u32| {
+            let mut corners = faces[face as usize];
+            corners.sort_unstable();
+            corners
+        };
+        let repeats = |&face: &u32| {
+            let mut before = self.ring(3 * face).map(|h| h / 3).filter(|&other| other < face);
+            before.any(|other| corners(other) == corners(face))
+        };
+        (0..faces.len() as u32).filter(repeats).collect()
     }
 
     /// How many half-edges there are.
@@ -92,13 +113,14 @@ fn ends(faces: &[[u32; 3]], h: u32) -> [u32; 2] {
     [face[side], face[(side + 1) % 3]]
 }
 
-/// The faces around each vertex.
+/// The faces around each vertex, all but some.
 #[derive(Debug, Clone)]
 pub(super) struct VertexFaces(Buckets);
 
 impl VertexFaces {
-    pub(super) fn of(vertices: usize, faces: &[[u32; 3]]) -> Self {
-        let corners = faces.iter().zip(0..).flat_map(|(&[a, b, c], f)| {
+    pub(super) fn of(vertices: usize, faces: &[[u32; 3]], left_out: &BTreeSet<u32>) -> Self {
+        let kept = faces.iter().zip(0..).filter(|(_, f)| !left_out.contains(f));
+        let corners = kept.flat_map(|(&[a, b, c], f)| {
             // A face that has a vertex twice is around it once.
             [Some(a), (b != a).then_some(b), (c != a && c != b).then_some(c)].into_iter().flatten().map(move |v| (v, f))
         });

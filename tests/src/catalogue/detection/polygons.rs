@@ -6,6 +6,7 @@ use crate::exact::exact;
 use crate::nasty::{neighbours2, ulps};
 use crate::random::Random;
 use crate::stage::{Stage, smooth};
+use carom_dynamics::events::Event;
 use carom_geometry::error::PolygonError;
 use carom_geometry::inside::Location;
 use carom_geometry::polygon::Polygon;
@@ -34,7 +35,7 @@ pub(super) fn cases() -> Vec<Case> {
             id: "H10",
             title: "balls dropped on a star and a comb, wound either way",
             elsewhere: "a fan of triangles covers the notches",
-            bound: "hit on the polygon, none beside it; the reverse loop: the same bits",
+            bound: "hit on the polygon, none beside it; the reverse loop: the same to 4 u",
             run: balls_on_concave,
         },
     ]
@@ -262,7 +263,14 @@ fn balls_on_concave() -> Figure {
                 stage.ball([x.x, x.y, 1.0], [0.0, 0.0, -1.0], 0.0).run()
             });
             let events = runs.each_ref().map(|run| run.trajectory.events.clone());
-            bound.keep(events[0] == events[1], || format!("{name}: {x:?} depends on the winding"));
+            // The triangles may be others, and their roundings.
+            let near = |a: &Event, b: &Event| {
+                let off =
+                    (a.position - b.position).amax().max((a.normal - b.normal).amax()).max((a.time - b.time).abs());
+                (a.kind, a.surface) == (b.kind, b.surface) && off <= 4.0 * UNIT_ROUNDOFF
+            };
+            let same = events[0].len() == events[1].len() && events[0].iter().zip(&events[1]).all(|(a, b)| near(a, b));
+            bound.keep(same, || format!("{name}: {x:?} depends on the winding"));
             // What stands for a point is touched within its radius.
             let doubt = 2.0 * carom_geometry::rounding::point_radius(2.0);
             let clear = shape.iter().enumerate().all(|(i, a)| distance(a, &shape[(i + 1) % shape.len()], &x) > doubt);

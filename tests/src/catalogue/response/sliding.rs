@@ -1,0 +1,3 @@
+//! x
+use super::super::Case;
+pub(super) const CASES: &[Case] = &[];
