@@ -71,7 +71,7 @@ pub enum Ending {
     UnstableStep,
     /// The ball used up its budget of steps.
     StepBudget,
-    /// The ball has left the range of f64.
+    /// The ball is farther (m) or faster (m/s) than f64 can square.
     OutOfRange,
 }
 

@@ -22,7 +22,7 @@ use crate::integrators::adaptive::Adaptive;
 use crate::integrators::{Integrator, Step};
 use crate::observer::{Observer, Segment};
 use crate::plan::Plan;
-use crate::tolerance::{EVENT_BUDGET, MAX_STANDSTILL, SLIDING_TOLERANCE, STEP_BUDGET, time_resolution};
+use crate::tolerance::{EVENT_BUDGET, FARTHEST, MAX_STANDSTILL, SLIDING_TOLERANCE, STEP_BUDGET, time_resolution};
 use nalgebra::Vector3;
 
 /// Simulates one ball of `plan` to the end and shows it to `observer`.
@@ -122,6 +122,13 @@ impl<O: Observer> Walk<'_, O> {
 
     /// Moves along `step` to `to`, which is at the time `end` if that is known better than by the sum.
     fn travel(&mut self, step: &Step, to: f64, motion: Motion, end: Option<f64>) {
+        let next = step.at(to);
+        let (position, velocity) = (next.position.coords, next.velocity);
+        if !(position.sum() + velocity.sum()).is_finite() || position.amax().max(velocity.amax()) > FARTHEST {
+            // It ends where it was last in range.
+            self.ending = Some(Ending::OutOfRange);
+            return;
+        }
         let time = self.clock.now();
         match end {
             Some(end) => self.clock.set(end),
@@ -131,10 +138,7 @@ impl<O: Observer> Walk<'_, O> {
         if to > 0.0 {
             self.observer.segment(&Segment { time, end, step: *step, to, motion });
         }
-        self.state = step.at(to);
-        if !(self.state.position.coords.sum() + self.state.velocity.sum()).is_finite() {
-            self.ending = Some(Ending::OutOfRange);
-        }
+        self.state = next;
         if end - self.moved > time_resolution(end) {
             self.standstill = 0;
             self.moved = end;

@@ -55,6 +55,9 @@ impl<O: Observer> Walk<'_, O> {
 
     /// At a collision: what is touched, how fast, and the answer.
     pub(super) fn arrive(&mut self, step: &Step, hit: Hit, returns: &Returns) {
+        if self.ending == Some(Ending::OutOfRange) {
+            return;
+        }
         let tolerance = self.touch_tolerance(step.path.reach(hit.f)).max(self.obstacles.doubt(step, &hit));
         let before = std::mem::take(&mut self.contacts);
         let mut contacts =
