@@ -229,3 +229,25 @@ fn r34_a_ball_that_bounces_down_a_slope_with_the_books_friction_may_speed_up() {
     assert!((book - (tan - mu / (1.0 + c_r))).abs() < 1e-12, "{book}");
     assert!((impulse - (tan - mu)).abs() < 1e-12, "{impulse}");
 }
+
+#[test]
+fn r28_a_ball_that_turns_round_in_a_corner_does_not_sink_into_the_wall() {
+    // Friction on the floor all but holds it against the wall: its last hops off the wall end near a standstill.
+    let (radius, material) = (0.38303877251675755, rough(0.6863948689802742, coulomb(0.45962633463514024)));
+    let run = Stage::new(3.0)
+        .gravity([-2.514476796157906, 0.0, -5.29330608049208])
+        .room(material, [2.0; 3])
+        .ball(
+            [1.1250836866115836, 0.5700844076883256, 1.4956390009895801],
+            [3.975835440685539, 7.299773258437436, -4.248881078711003],
+            radius,
+        )
+        .run();
+    assert_eq!(run.outcome.motion, Motion::Resting);
+    for segment in &run.trajectory.segments {
+        for k in 0..=16 {
+            let x = segment.step.at(segment.to * f64::from(k) / 16.0).position;
+            assert!(x.coords.min() - radius >= -16.0 * U, "{:e} at {}", x.coords.min() - radius, segment.time);
+        }
+    }
+}

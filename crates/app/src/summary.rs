@@ -120,7 +120,7 @@ impl<'a> Tally<'a> {
             Ending::UnresolvedContact => "unresolved_contact",
             Ending::UnstableStep => "unstable_step",
             Ending::StepBudget => "step_budget",
-            Ending::OutOfRange => "out_of_range",
+            Ending::Diverged => "diverged",
             _ => "other",
         };
         self.ended_early.push(EndedEarly { ball, time: outcome.time, ending });

@@ -11,7 +11,7 @@ use carom_geometry::clearance::{Clearance, Entry};
 use carom_geometry::contact::{Hold, MovingBall};
 use carom_geometry::plane::Side;
 use carom_geometry::rounding::contact_doubt;
-use carom_geometry::sweep::{Bend, RegionBound, Work};
+use carom_geometry::sweep::{Bend, RegionBound, Site, Work};
 use nalgebra::{Point3, Vector3};
 
 /// The earliest collision of a step.
@@ -134,7 +134,7 @@ impl<'a> Obstacles<'a> {
     /// Until when a ball that leaves an edge or vertex tangentially touches none of the faces there: until it comes back to it, or
     /// enters the region of one of them.
     fn leaves_until(&self, step: &Step, contact: &Contact, counters: &mut Counters) -> f64 {
-        let exit = self.exit(step, contact, counters).map_or(f64::INFINITY, |(f, _)| f);
+        let exit = self.exit(step, contact, 0.0, counters).map_or(f64::INFINITY, |(f, _)| f);
         leaves_until(step, self.bend(contact), self.radius_at(contact)).min(exit)
     }
 
@@ -159,14 +159,20 @@ impl<'a> Obstacles<'a> {
         }
     }
 
-    /// Where the step first leaves the region of a contact.
-    pub fn exit(&self, step: &Step, contact: &Contact, counters: &mut Counters) -> Option<(f64, RegionBound)> {
+    /// Where the step, after `from`, first leaves the region of a contact.
+    pub fn exit(
+        &self,
+        step: &Step,
+        contact: &Contact,
+        from: f64,
+        counters: &mut Counters,
+    ) -> Option<(f64, RegionBound)> {
         let mut first: Option<(f64, RegionBound)> = None;
         for bound in self.mesh(contact.surface)?.region(contact.site?) {
             counters.clearances += 1;
             let inward = -bound.outward;
             let gap = inward.dot(&(step.path.start() - bound.point));
-            if let Entry::At { f, .. } = step.path.clearance(gap, &inward).first_entry(0.0, step.to)
+            if let Entry::At { f, .. } = step.path.clearance(gap, &inward).first_entry(from, step.to)
                 && first.is_none_or(|(best, _)| f < best)
             {
                 first = Some((f, bound));
@@ -291,6 +297,18 @@ impl<'a> Obstacles<'a> {
                 let i = self.plan.planes.iter().position(|(surface, _)| *surface == contact.surface)?;
                 Some(self.plan.planes[i].1.clearance(position, self.radius, self.sides[i]))
             }
+        }
+    }
+
+    /// Whether `next` continues the plane of `contact` to the bit: moving on it, nothing changes there.
+    pub fn continues(&self, contact: &Contact, next: Site) -> bool {
+        let Some(mesh) = self.mesh(contact.surface) else { return false };
+        match (contact.site, next) {
+            (Some(Site::Face(here)), Site::Face(there)) => {
+                let normal = mesh.normal(there).map(|n| n.into_inner());
+                normal.is_some_and(|n| mesh.normal(here).is_some_and(|m| n == *m || n == -m.into_inner()))
+            }
+            _ => false,
         }
     }
 

@@ -22,6 +22,12 @@ pub enum EventKind {
     EventBudget,
     /// The simulation of the ball was ended: its contacts kept answering each other without time passing.
     UnresolvedContact,
+    /// The simulation of the ball was ended: its next step has no finite numbers.
+    Diverged,
+    /// The simulation of the ball was ended: the fixed step is too long for the air resistance.
+    UnstableStep,
+    /// The simulation of the ball was ended: its budget of steps is used up.
+    StepBudget,
 }
 
 /// One event of one ball at one surface. A simultaneous impact at several surfaces is one event for each, at one time and
@@ -71,8 +77,9 @@ pub enum Ending {
     UnstableStep,
     /// The ball used up its budget of steps.
     StepBudget,
-    /// The ball is farther (m) or faster (m/s) than f64 can square.
-    OutOfRange,
+    /// The next step has no finite numbers: the timestep is too long for the forces, or the motion left the range
+    /// whose squares are in f64. The state is the last finite one.
+    Diverged,
 }
 
 /// A ball at the end of its simulation.

@@ -57,8 +57,8 @@ pub fn simulate(plan: &Plan, ball: &Ball, observer: &mut impl Observer) -> Outco
             Motion::Sliding => walk.slide(),
             Motion::Resting => walk.rest(),
         }
-        if walk.counters.paths >= STEP_BUDGET {
-            walk.ending = walk.ending.or(Some(Ending::StepBudget));
+        if walk.counters.paths >= STEP_BUDGET && walk.ending.is_none() {
+            walk.give_up(Ending::StepBudget, EventKind::StepBudget);
         }
     }
     Outcome {
@@ -122,13 +122,6 @@ impl<O: Observer> Walk<'_, O> {
 
     /// Moves along `step` to `to`, which is at the time `end` if that is known better than by the sum.
     fn travel(&mut self, step: &Step, to: f64, motion: Motion, end: Option<f64>) {
-        let next = step.at(to);
-        let (position, velocity) = (next.position.coords, next.velocity);
-        if !(position.sum() + velocity.sum()).is_finite() || position.amax().max(velocity.amax()) > FARTHEST {
-            // It ends where it was last in range.
-            self.ending = Some(Ending::OutOfRange);
-            return;
-        }
         let time = self.clock.now();
         match end {
             Some(end) => self.clock.set(end),
@@ -138,7 +131,7 @@ impl<O: Observer> Walk<'_, O> {
         if to > 0.0 {
             self.observer.segment(&Segment { time, end, step: *step, to, motion });
         }
-        self.state = next;
+        self.state = step.at(to);
         if end - self.moved > time_resolution(end) {
             self.standstill = 0;
             self.moved = end;
@@ -148,6 +141,16 @@ impl<O: Observer> Walk<'_, O> {
         if self.standstill > MAX_STANDSTILL {
             self.give_up(Ending::UnresolvedContact, EventKind::UnresolvedContact);
         }
+    }
+
+    /// Whether `step` is none because a number in it is not finite, or because the ball is out of range; ends its simulation if so.
+    fn diverges(&mut self, step: &Step) -> bool {
+        let reached = self.state.position.coords.amax().max(self.state.velocity.amax());
+        let diverges = !step.is_finite() || reached > FARTHEST;
+        if diverges {
+            self.give_up(Ending::Diverged, EventKind::Diverged);
+        }
+        diverges
     }
 
     /// Rests to the end.

@@ -87,6 +87,12 @@ impl Balance {
     }
 }
 
+/// Whether none of `carriers` is pressed by the acceleration `a` and the motion in `state`, by more than rounding.
+pub fn is_lifted(a: &Vector3<f64>, carriers: &[Carrier], state: &State) -> bool {
+    let lift = |c: &Carrier| c.normal(&state.position).dot(a) + c.centripetal(&state.velocity);
+    carriers.iter().all(|c| lift(c) >= rate_rounding(a.norm()))
+}
+
 /// A stretch of sliding.
 #[derive(Debug, Clone, Copy)]
 pub struct Slide {

@@ -136,7 +136,11 @@ impl Piece {
 /// The pieces are those of [`from`, 1] wherever in it the search ends, so that what is found has the same bits for every `to`.
 pub(crate) fn first_entry(coefficients: &[f64; DEGREE + 1], from: f64, to: f64) -> Option<f64> {
     // Each halving pushes one piece, and after 60 a piece is narrower than the spacing of f.
-    let mut stack = [Piece::of(coefficients, from, to.max(1.0)); 64];
+    let whole = Piece::of(coefficients, from, to.max(1.0));
+    if !whole.b.iter().all(|b| b.is_finite()) {
+        return Some(from); // no comparison would ever rule a piece out: on the safe side, a hit
+    }
+    let mut stack = [whole; 64];
     let mut depth = 1;
     while depth > 0 {
         depth -= 1;

@@ -270,6 +270,16 @@ impl Mesh {
         self.vertex_faces.around(vertex)
     }
 
+    /// Whether all faces around a vertex lie in one plane and go all the way round it.
+    pub fn is_level(&self, vertex: u32) -> bool {
+        let ends_here = |face: u32, side: usize| {
+            let corners = self.faces[face as usize];
+            corners[side] == vertex || corners[(side + 1) % 3] == vertex
+        };
+        let level = |face: u32| (0..3).all(|side| !ends_here(face, side) || self.fold(face, side) == Fold::Flat);
+        self.vertex_faces(vertex).iter().all(|&face| level(face))
+    }
+
     /// The memory it takes beside the vertices, in bytes.
     pub fn bytes(&self) -> usize {
         let normals = match &self.normals {

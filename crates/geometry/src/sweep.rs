@@ -196,12 +196,15 @@ impl Mesh {
         above.abs() >= height && (if above > 0.0 { fold } else { fold.from_back() }) == Fold::Concave
     }
 
-    /// The one name of a feature of `face`.
+    /// The one name of what is touched at a feature of `face`.
     fn site(&self, face: u32, feature: Feature) -> Site {
         match feature {
-            Feature::Face => Site::Face(face),
-            Feature::Edge(edge) => self.edge_site(face, edge),
-            Feature::Vertex(corner) => self.vertex_site(self.faces()[face as usize][corner as usize]),
+            Feature::Edge(edge) if self.fold(face, edge.into()) != Fold::Flat => self.edge_site(face, edge),
+            Feature::Vertex(corner) if !self.is_level(self.faces()[face as usize][corner as usize]) => {
+                self.vertex_site(self.faces()[face as usize][corner as usize])
+            }
+            // A border inside a plane is none.
+            Feature::Face | Feature::Edge(_) | Feature::Vertex(_) => Site::Face(face),
         }
     }
 

@@ -408,6 +408,9 @@ fn main() {
                 }
             };
             ran += 1;
+            if show {
+                println!("{:?} {:?} {:?} {:?}", scene.method, scene.drag, scene.gravity, scene.balls);
+            }
             let began = Instant::now();
             // A thread of its own: a ball that never ends is left to itself.
             let (send, receive) = std::sync::mpsc::channel();

@@ -84,6 +84,9 @@ fn kind(kind: EventKind) -> &'static str {
         EventKind::Wake => "wake",
         EventKind::EventBudget => "event-budget",
         EventKind::UnresolvedContact => "unresolved-contact",
+        EventKind::UnstableStep => "unstable-step",
+        EventKind::StepBudget => "step-budget",
+        EventKind::Diverged => "diverged",
         _ => "other",
     }
 }

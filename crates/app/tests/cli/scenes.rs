@@ -3,10 +3,10 @@
 use crate::common::Folder;
 use std::fmt::Write;
 
-/// Numbers of an event in ten digits: the bits are compared elsewhere.
+/// Numbers of an event in six digits: hundreds of bounces amplify the last ones, and the bits are compared elsewhere.
 fn rounded(line: &str) -> String {
     let cell = |cell: &str| match cell.parse::<f64>() {
-        Ok(x) if cell.contains(['.', 'e']) => format!("{x:.9e}"),
+        Ok(x) if cell.contains(['.', 'e']) => format!("{x:.5e}"),
         _ => cell.to_owned(),
     };
     line.split(',').map(cell).collect::<Vec<_>>().join(",")

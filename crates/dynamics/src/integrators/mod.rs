@@ -101,6 +101,15 @@ impl Step {
         self.at(self.to)
     }
 
+    /// Whether the path, the velocity and their reach over the whole step are finite.
+    pub fn is_finite(&self) -> bool {
+        // A maximum passes over what is no number; a sum does not.
+        let start = self.path.start().coords;
+        let vectors = self.path.terms().iter().chain(&self.velocity).chain([&start]);
+        let sum = vectors.flatten().fold(self.path.reach(self.to) + self.seconds, |sum, x| sum + x.abs());
+        sum.is_finite()
+    }
+
     /// The time from the start to `f`, in s.
     pub fn time(&self, f: f64) -> f64 {
         f * self.seconds

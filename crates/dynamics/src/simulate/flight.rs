@@ -22,8 +22,7 @@ impl<O: Observer> Walk<'_, O> {
         let rounding = rate_rounding(self.state.velocity.norm());
         let tangential = self.contacts.iter().any(|c| c.rate <= rounding);
         let step = self.integrator.step(&self.forces, &self.state, timestep, tangential, &mut self.counters);
-        if self.is_unstable(&step) {
-            self.ending = Some(Ending::UnstableStep);
+        if self.diverges(&step) || self.is_unstable(&step) {
             return;
         }
         let returns = self.obstacles.returns(&step, &self.contacts, &mut self.counters);
@@ -42,22 +41,22 @@ impl<O: Observer> Walk<'_, O> {
         }
     }
 
-    /// Whether a step of fixed length leaves the ball faster in the air than it can be: resistance takes from the speed v - w, and what does not
+    /// Whether a step of fixed length leaves the ball faster in the air than it can be, which ends its simulation: resistance takes from the speed v - w, and what does not
     /// change adds |a| h at most. (Euler's methods are stable up to k h / m = 2 with linear drag, Runge and Kutta's up to 2.785.)
-    fn is_unstable(&self, step: &Step) -> bool {
+    fn is_unstable(&mut self, step: &Step) -> bool {
         let [flow] = self.forces.flows else { return false };
         let Some(calm) = flow.calms_to().filter(|_| self.integrator.timestep().is_some()) else { return false };
         let before = (self.state.velocity - calm).norm() + self.forces.constant.norm() * step.time(step.to);
         let after = (step.end().velocity - calm).norm();
-        // What is not a number is not stable either.
-        after.is_nan() || after > before + rate_rounding(before)
+        let unstable = after > before + rate_rounding(before);
+        if unstable {
+            self.give_up(Ending::UnstableStep, EventKind::UnstableStep);
+        }
+        unstable
     }
 
     /// At a collision: what is touched, how fast, and the answer.
     pub(super) fn arrive(&mut self, step: &Step, hit: Hit, returns: &Returns) {
-        if self.ending == Some(Ending::OutOfRange) {
-            return;
-        }
         let tolerance = self.touch_tolerance(step.path.reach(hit.f)).max(self.obstacles.doubt(step, &hit));
         let before = std::mem::take(&mut self.contacts);
         let mut contacts =

@@ -8,11 +8,14 @@ use crate::events::{EventKind, Motion};
 use crate::integrators::{Step, exact};
 use crate::observer::Observer;
 use crate::response::changed_rate;
-use crate::sliding::{Balance, Carrier, Slide, slide};
+use crate::sliding::{Balance, Carrier, Slide, is_lifted, slide};
 use crate::tolerance::{PATIENCE, PATIENCE_WITH_HOPS, SLIDING_TOLERANCE, least_hop, rate_rounding, time_resolution};
 use carom_geometry::rounding::position_bound;
-use carom_geometry::sweep::{Bend, RegionBound};
+use carom_geometry::sweep::{Bend, RegionBound, Site};
 use nalgebra::Vector3;
+
+/// Faces of one plane that a stretch of sliding crosses before it is cut after all.
+const MAX_CROSSINGS: usize = 4096;
 
 impl<O: Observer> Walk<'_, O> {
     /// What the ball makes of its contacts: it flies on, goes on bouncing, or settles. Says whether something carries it.
@@ -199,7 +202,7 @@ impl<O: Observer> Walk<'_, O> {
             self.contacts.iter_mut().for_each(|c| c.rate = 0.0);
         }
         let remaining = self.clock.until(self.plan.duration);
-        let Slide { step, stops } = match self.settling {
+        let Slide { mut step, stops } = match self.settling {
             None => {
                 let slider = &mut self.slider;
                 slide(slider, &self.forces, &self.state, &carriers, &balance, remaining, &mut self.counters)
@@ -212,14 +215,21 @@ impl<O: Observer> Walk<'_, O> {
                 Slide { step, stops: seconds == settling.seconds }
             }
         };
+        if self.diverges(&step) {
+            return;
+        }
         let motion = if self.settling.is_some() { Motion::Flying } else { Motion::Sliding };
-        let exit = self.exit(&step);
+        let off = self.settling.is_none().then(|| self.lift_off(&step, &carriers)).flatten();
+        step.to = off.unwrap_or(step.to);
+        let mut crossings = Vec::new();
+        let exit = self.exit(&step, &mut crossings);
         let returns = self.obstacles.returns(&step, &self.contacts, &mut self.counters);
         let hit = self.obstacles.earliest(&step, &self.contacts, &returns, &mut self.counters);
         let hit = hit.filter(|hit| exit.is_none_or(|(f, ..)| hit.f < f));
         let to = hit.map(|hit| hit.f).or(exit.map(|(f, ..)| f)).unwrap_or(step.to);
-        let whole = hit.is_none() && exit.is_none() && !stops && step.time(step.to) >= remaining;
+        let whole = hit.is_none() && exit.is_none() && off.is_none() && !stops && step.time(step.to) >= remaining;
         self.travel(&step, to, motion, whole.then_some(self.plan.duration));
+        self.cross_level(&crossings, to);
         if to > 0.0 {
             self.leave_behind();
         }
@@ -240,6 +250,7 @@ impl<O: Observer> Walk<'_, O> {
                     self.end_settling();
                 }
             }
+            (None, None) if off.is_some() => self.set_flying(true),
             (None, None) if stops => self.state.velocity = Vector3::zeros(),
             (None, None) => {}
         }
@@ -250,6 +261,28 @@ impl<O: Observer> Walk<'_, O> {
         let v = self.state.velocity;
         let load: f64 = balance.loads.loads().map(|(_, load)| load).sum();
         balance.friction > 0.0 && balance.free.dot(&v) < 0.0 && v.norm() <= self.plan.rest.at(load).speed
+    }
+
+    /// Where in `step` the last of `carriers` stops carrying: the ball leaves an edge too fast for its curve, or the air lifts it.
+    fn lift_off(&mut self, step: &Step, carriers: &[Carrier]) -> Option<f64> {
+        if self.forces.are_constant() && carriers.iter().all(|c| c.bend == Bend::Flat) {
+            return None;
+        }
+        let mut lifted = |f: f64| {
+            let state = step.at(f);
+            is_lifted(&self.forces.acceleration(&state, &mut self.counters), carriers, &state)
+        };
+        if !lifted(step.to) {
+            return None;
+        }
+        let (mut on, mut off) = (0.0, step.to);
+        loop {
+            let middle = 0.5 * (on + off);
+            if middle <= on || middle >= off {
+                return Some(off);
+            }
+            if lifted(middle) { off = middle } else { on = middle }
+        }
     }
 
     /// Forgets what the ball touched where it was, but for what it moves along.
@@ -288,17 +321,39 @@ impl<O: Observer> Walk<'_, O> {
         }
     }
 
-    /// Where the step first leaves the region of a lasting contact, and which of the lasting ones that is.
-    fn exit(&mut self, step: &Step) -> Option<(f64, usize, RegionBound)> {
+    /// Where the step first leaves the region of a lasting contact, and which of the lasting ones that is; on the way, `crossings`
+    /// notes the faces of the same plane that it comes to: they cut no path, so that a plane is one however it is cut into triangles.
+    fn exit(&mut self, step: &Step, crossings: &mut Vec<(f64, usize, Site)>) -> Option<(f64, usize, RegionBound)> {
         let mut first: Option<(f64, usize, RegionBound)> = None;
         for (i, contact) in self.contacts.iter().filter(|c| c.lasting).enumerate() {
-            if let Some((f, bound)) = self.obstacles.exit(step, contact, &mut self.counters)
+            let mut contact = *contact;
+            let mut from = 0.0;
+            let mut exit = self.obstacles.exit(step, &contact, from, &mut self.counters);
+            while let Some((f, bound)) = exit
+                && crossings.len() < MAX_CROSSINGS
+                && self.obstacles.continues(&contact, bound.next)
+            {
+                crossings.push((f, i, bound.next));
+                contact.site = Some(bound.next);
+                from = f;
+                exit = self.obstacles.exit(step, &contact, from, &mut self.counters);
+            }
+            if let Some((f, bound)) = exit
                 && first.is_none_or(|(best, ..)| f < best)
             {
                 first = Some((f, i, bound));
             }
         }
         first
+    }
+
+    /// Comes to the faces of the same plane that lie on the way to `to`.
+    fn cross_level(&mut self, crossings: &[(f64, usize, Site)], to: f64) {
+        for (_, i, site) in crossings.iter().filter(|(f, ..)| *f <= to) {
+            if let Some(contact) = self.contacts.iter_mut().filter(|c| c.lasting).nth(*i) {
+                contact.site = Some(*site);
+            }
+        }
     }
 
     /// The neighbouring place takes over.
