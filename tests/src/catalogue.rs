@@ -72,11 +72,6 @@ impl Bound {
 
     /// The figure: `text`, and the first that broke the bound, if any did.
     pub fn figure(self, text: String) -> Figure {
-        if std::env::var("ALL").is_ok() {
-            for b in &self.broken {
-                println!("   - {b}");
-            }
-        }
         match self.broken.first() {
             None => Figure { text, holds: true },
             Some(first) => {

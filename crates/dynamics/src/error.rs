@@ -73,4 +73,14 @@ pub enum SceneError {
         /// How far from the origin the scene reaches, in m.
         distance: f64,
     },
+    /// A quantity that f64 cannot square, as the loop must.
+    #[error("{what} is {value:e}, but must be {expected}; give the scene in other units")]
+    OutOfRange {
+        /// Which quantity, with its unit.
+        what: &'static str,
+        /// The refused value.
+        value: f64,
+        /// What would be right.
+        expected: &'static str,
+    },
 }

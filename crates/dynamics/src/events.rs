@@ -77,8 +77,8 @@ pub enum Ending {
     UnstableStep,
     /// The ball used up its budget of steps.
     StepBudget,
-    /// The next step has no finite numbers: the timestep is too long for the forces, or the motion left the range of f64. The state is
-    /// the last finite one.
+    /// The next step has no finite numbers: the timestep is too long for the forces, or the motion left the range
+    /// whose squares are in f64. The state is the last finite one.
     Diverged,
 }
 

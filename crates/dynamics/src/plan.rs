@@ -9,7 +9,8 @@ use crate::integrators::{Integrator, Stepping};
 use crate::scene::{Method, Scene};
 use crate::surface::{Material, Shape};
 use crate::tolerance::{
-    FLIGHT_TOLERANCE, LEAST_TOLERANCE, RestThresholds, STEP_BUDGET, TOLERANCE_RANGE, default_rest_length,
+    FLIGHT_TOLERANCE, LARGEST, LEAST_TOLERANCE, RestThresholds, SMALLEST, STEP_BUDGET, TOLERANCE_RANGE,
+    default_rest_length,
 };
 use carom_geometry::bounds::Aabb;
 use carom_geometry::mesh::Mesh;
@@ -65,6 +66,7 @@ impl Plan {
         let method = method(scene, &flows)?;
         let (planes, meshes) = shapes(scene);
         let size = Size::of(scene, &planes, &meshes);
+        check_range(scene, &size, !meshes.is_empty())?;
         let least = 16.0 * UNIT_ROUNDOFF * size.farthest;
         for (ball, b) in scene.balls.iter().enumerate() {
             if b.radius() > 0.0 && b.radius() < least {
@@ -165,6 +167,22 @@ fn method(scene: &Scene, flows: &[Arc<dyn Flow>]) -> Result<Method, SceneError> 
         }
     }
     Ok(method)
+}
+
+/// Refuses what f64 cannot square; lengths are squared where there are meshes.
+fn check_range(scene: &Scene, size: &Size, has_meshes: bool) -> Result<(), SceneError> {
+    let refuse = |what, value, expected| Err(SceneError::OutOfRange { what, value, expected });
+    let speed = scene.balls.iter().map(|b| b.start().velocity.amax()).fold(0.0, f64::max);
+    let gravity = scene.gravity.map_or(0.0, |g| g.acceleration().amax());
+    let largest =
+        [("the largest coordinate (m)", size.farthest), ("a speed (m/s)", speed), ("gravity (m/s^2)", gravity)];
+    if let Some((what, value)) = largest.into_iter().find(|(_, value)| *value > LARGEST) {
+        return refuse(what, value, "at most 2^500 (3e150)");
+    }
+    if has_meshes && size.extent < SMALLEST {
+        return refuse("the size of a scene with polygons or meshes (m)", size.extent, "at least 2^-450 (3e-136)");
+    }
+    Ok(())
 }
 
 /// Planes with their surfaces.

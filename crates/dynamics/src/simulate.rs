@@ -22,7 +22,7 @@ use crate::integrators::adaptive::Adaptive;
 use crate::integrators::{Integrator, Step};
 use crate::observer::{Observer, Segment};
 use crate::plan::Plan;
-use crate::tolerance::{EVENT_BUDGET, MAX_STANDSTILL, SLIDING_TOLERANCE, STEP_BUDGET, time_resolution};
+use crate::tolerance::{EVENT_BUDGET, FARTHEST, MAX_STANDSTILL, SLIDING_TOLERANCE, STEP_BUDGET, time_resolution};
 use nalgebra::Vector3;
 
 /// Simulates one ball of `plan` to the end and shows it to `observer`.
@@ -143,9 +143,10 @@ impl<O: Observer> Walk<'_, O> {
         }
     }
 
-    /// Whether `step` is none because a number in it is not finite; ends the simulation of the ball if so.
+    /// Whether `step` is none because a number in it is not finite, or because the ball is out of range; ends its simulation if so.
     fn diverges(&mut self, step: &Step) -> bool {
-        let diverges = !step.is_finite();
+        let reached = self.state.position.coords.amax().max(self.state.velocity.amax());
+        let diverges = !step.is_finite() || reached > FARTHEST;
         if diverges {
             self.give_up(Ending::Diverged, EventKind::Diverged);
         }

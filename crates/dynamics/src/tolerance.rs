@@ -141,3 +141,12 @@ pub const PATIENCE: u32 = 16;
 
 /// Events of one ball before its simulation is ended: a ball that bounces for ever stops here.
 pub const EVENT_BUDGET: u64 = 10_000_000;
+
+/// 2^500: coordinates (m), speeds (m/s) and accelerations (m/s^2) of a scene are at most this, so that the square of a sum of them is a number.
+pub const LARGEST: f64 = f64::from_bits((1023 + 500) << 52);
+
+/// 2^511: a ball that gets farther (m) or faster (m/s) has left the range in which f64 can square a length, and its simulation is ended.
+pub const FARTHEST: f64 = f64::from_bits((1023 + 511) << 52);
+
+/// 2^-450: a scene with a mesh is at least this large (m), so that the squares of lengths, and of their roundings, are normal numbers.
+pub const SMALLEST: f64 = f64::from_bits((1023 - 450) << 52);

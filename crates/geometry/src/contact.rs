@@ -118,7 +118,7 @@ pub(crate) fn contact_from(
         let plane = path.clearance(gap, &normal);
         let touching = plane.at(f) <= 2.0 * bound && plane.rate(f) < 0.0;
         if touching || next - f <= 2.0 * UNIT_ROUNDOFF * f {
-            return Contact::At { f: polish(ball, &corners, f, end, bound_at(f), rounds), feature };
+            return Contact::At { f: polish(ball, &corners, f, end, rounds), feature };
         }
         f = next;
     }
@@ -161,14 +161,12 @@ const MAX_POLISH: u32 = 8;
 /// From `f`, where the ball touches to within the bound, to where it touches: support planes again, now where they are. The triangle
 /// is behind them all the same, so this ends at the contact to the rounding of the planes: on a face at once, at an edge or a vertex in
 /// a step or two of Newton's method.
-fn polish(ball: &MovingBall, corners: &[Point3<f64>; 3], f: f64, to: f64, bound: f64, rounds: &mut u64) -> f64 {
+fn polish(ball: &MovingBall, corners: &[Point3<f64>; 3], f: f64, to: f64, rounds: &mut u64) -> f64 {
     let mut f = f;
     for _ in 0..MAX_POLISH {
         let Support { normal, gap, feature } = Support::at(ball, corners, f);
         *rounds += 1;
-        // A face's plane is met to a few roundings. At edges and vertices, where the planes keep turning, one bound more is left.
-        let left = if feature == Feature::Face { 0.0 } else { bound };
-        let Entry::At { f: next, .. } = ball.path.clearance(gap - left, &normal).first_entry(f, to) else { break };
+        let Entry::At { f: next, .. } = ball.path.clearance(gap, &normal).first_entry(f, to) else { break };
         let arrived = next - f <= 2.0 * UNIT_ROUNDOFF * f || feature == Feature::Face;
         f = next;
         if arrived {

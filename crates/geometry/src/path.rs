@@ -88,12 +88,13 @@ impl Path {
         let (a, b) = (self.displacement(from), self.displacement(to));
         let half = 0.5 * (to - from);
         // |p - chord| <= max |p''| (to - from)^2 / 8, and |p''| <= sum k (k-1) |t_k| f^(k-2).
+        // All by 1/16, so that the factors up to 12 do not take a path out of the range of f64.
         let (mut bend, mut power) = (0.0, 1.0);
         for (k, term) in self.terms().iter().enumerate().skip(1) {
-            bend += ((k + 1) * k) as f64 * term.norm() * power;
+            bend += ((k + 1) * k) as f64 * length(&(term * 0.0625)) * power;
             power *= to;
         }
-        Chord { from: a, to: b, sagitta: 0.5 * half * half * bend }
+        Chord { from: a, to: b, sagitta: 8.0 * half * half * bend }
     }
 
     /// A box around the stretch of the path over [from, to].
@@ -101,6 +102,12 @@ impl Path {
         let chord = self.chord(from, to);
         Aabb::of_points(&[self.start + chord.from, self.start + chord.to]).inflate(chord.sagitta)
     }
+}
+
+/// The length of `v`, or more where its square is beyond the range of f64.
+fn length(v: &Vector3<f64>) -> f64 {
+    let square = v.norm_squared();
+    if square.is_finite() { square.sqrt() } else { 2.0 * v.amax() }
 }
 
 /// A straight stand-in for a stretch of a path, relative to the start of the path.
@@ -150,6 +157,14 @@ mod tests {
             assert!((clearance.at(f) - (2.0 + n.dot(&path.displacement(f)))).abs() < 1e-14);
             assert!((clearance.rate(f) - n.dot(&path.derivative(f))).abs() < 1e-13);
         }
+    }
+
+    #[test]
+    fn h18_the_sagitta_is_a_number_as_long_as_the_path_is() {
+        let path =
+            Path::parabola(Point3::origin(), Vector3::zeros(), Vector3::new(f64::MAX / 4.0, f64::MAX / 4.0, 0.0));
+        let (whole, half) = (path.chord(0.0, 1.0).sagitta, path.chord(0.0, 0.5).sagitta);
+        assert!(whole.is_finite() && half == whole / 4.0, "{whole:e} {half:e}");
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Friction at an impact: what it takes off the tangential velocity v_t (section 3.2.2 of the chapter).
 
 use crate::error::{ValueError, require};
+use crate::tolerance::LARGEST;
 use nalgebra::Vector3;
 
 /// The friction of a surface.
@@ -69,6 +70,8 @@ impl Friction {
     /// The friction of lasting contact, which is the limit of ever more and ever smaller impacts.
     pub fn in_contact(&self) -> ContactFriction {
         match *self {
+            // What stops every motion at once, as far as f64 can tell, is the limit: it sticks.
+            Friction::Coulomb(mu) | Friction::Impulse(mu) if mu.get() > LARGEST => ContactFriction::Sticking,
             Friction::Coulomb(mu) | Friction::Impulse(mu) if mu.get() > 0.0 => ContactFriction::Sliding(mu.get()),
             Friction::Linear(c_f) if c_f.get() > 0.0 => ContactFriction::Sticking,
             _ => ContactFriction::Sliding(0.0),
@@ -81,7 +84,8 @@ impl Friction {
 pub enum ContactFriction {
     /// |F_t| = mu |F_n| against the motion; at most that at rest. 0 is a frictionless surface.
     Sliding(f64),
-    /// Linear friction takes the share c_f of v_t at each of infinitely many impacts: nothing is left, and nothing moves.
+    /// Linear friction takes the share c_f of v_t at each of infinitely many impacts: nothing is left, and nothing moves. So it is where mu
+    /// has no bound.
     Sticking,
 }
 

@@ -33,10 +33,10 @@ pub fn step(state: &State, a: Vector3<f64>, remaining: f64) -> Step {
     }
 }
 
-/// The least power of two >= `x`, for positive x well inside the range of f64.
+/// The least power of two >= `x` > 0; the largest there is, if none is.
 fn next_power_of_two(x: f64) -> f64 {
     let floor = f64::from_bits(x.max(f64::MIN_POSITIVE).to_bits() & (0x7ff << 52));
-    if floor < x { 2.0 * floor } else { floor }
+    if floor < x && x <= 2f64.powi(1023) { 2.0 * floor } else { floor }
 }
 
 #[cfg(test)]
@@ -46,7 +46,15 @@ mod tests {
 
     #[test]
     fn powers_of_two() {
-        for (x, p) in [(1.0, 1.0), (1.5, 2.0), (3.0, 4.0), (0.3, 0.5), (1e-3, 2f64.powi(-9)), (300.0, 512.0)] {
+        for (x, p) in [
+            (1.0, 1.0),
+            (1.5, 2.0),
+            (3.0, 4.0),
+            (0.3, 0.5),
+            (1e-3, 2f64.powi(-9)),
+            (300.0, 512.0),
+            (f64::MAX, 2f64.powi(1023)),
+        ] {
             assert_eq!(next_power_of_two(x), p);
         }
     }

@@ -107,12 +107,13 @@ fn refused() -> Figure {
 /// A finite number: ordinary, zero, subnormal or huge.
 fn any(random: &mut Random) -> f64 {
     let sign = if random.below(2) == 0 { 1.0 } else { -1.0 };
-    sign * match random.below(8) {
-        0 => 0.0,
-        1 => f64::MAX,
-        2 => f64::from_bits(1 + random.below(9) as u64),
-        3 => 2f64.powi(random.below(2040) as i32 - 1020),
-        4 => 2f64.powi(random.below(900) as i32 - 450) * random.within(1.0, 2.0),
+    sign * match random.below(80) {
+        0 => f64::MAX,
+        1 => f64::from_bits(1 + random.below(9) as u64),
+        2 => 2f64.powi(random.below(2040) as i32 - 1020),
+        3..=5 => random.octave(-450, 450),
+        6..=12 => random.octave(-40, 40),
+        13..=22 => 0.0,
         _ => random.within(0.0, 2.0),
     }
 }
