@@ -11,7 +11,8 @@ use carom_geometry::clearance::{Clearance, Entry};
 use carom_geometry::contact::{Hold, MovingBall};
 use carom_geometry::plane::Side;
 use carom_geometry::rounding::contact_doubt;
-use carom_geometry::sweep::{Bend, RegionBound, Site, Work};
+use carom_geometry::site::{Bend, RegionBound, Site};
+use carom_geometry::sweep::Work;
 use nalgebra::{Point3, Vector3};
 
 /// The earliest collision of a step.
