@@ -4,10 +4,11 @@
 //! the same. So 256 u (L + travel), with L the largest coordinate that enters, is granted to a flight. The centre of a ball that slides
 //! around an edge follows a circle to 1e-10 of its radius a step, and a flight may begin from there.
 
+mod laws;
+
 use crate::world::{U, World};
 use carom_dynamics::body::{Ball, State};
-use carom_dynamics::effects::friction::{ContactFriction, Friction};
-use carom_dynamics::events::{Event, EventKind, Motion, Outcome};
+use carom_dynamics::events::{Event, Motion, Outcome};
 use carom_dynamics::observer::{Segment, Trajectory};
 use carom_dynamics::scene::{Method, Scene};
 use nalgebra::{Point3, Vector3};
@@ -43,8 +44,6 @@ pub enum Flaw {
     Hovering,
     /// The ball rests where its weight would move it.
     Unsupported,
-    /// The ball keeps its velocity but moves otherwise.
-    SlideLaw,
 }
 
 /// Something wrong, by how much, and how much was allowed.
@@ -157,13 +156,12 @@ impl<'a> Checker<'a> {
         let closed = self.world.planes.is_empty() && (around - around.round()).abs() < 1e-6;
         let every = (run.segments.len() / 8).max(1);
         for (k, segment) in run.segments.iter().enumerate() {
-            let first = events.peek().map(|e| e.time);
             let mut group: Vec<Event> = Vec::new();
             while let Some(e) = events.next_if(|e| e.time <= segment.time) {
                 group.push(*e);
             }
             self.now = segment.time;
-            self.events(&mut state, &group, first);
+            self.events(&mut state, &group);
             self.continuity(&state, time, segment);
             let begin = segment.step.at(0.0);
             let slack = self.energy_slack(&begin, share);
@@ -185,7 +183,7 @@ impl<'a> Checker<'a> {
             }
             // A settling ball flies along its surface.
             let bent = segment.step.velocity[1] != self.gravity * segment.step.seconds;
-            self.settled = segment.motion == Motion::Flying && bent && self.scene.drag.is_none();
+            self.settled = segment.motion == Motion::Flying && bent && segment.step.exact;
             if exact && segment.motion == Motion::Flying {
                 if !self.settled {
                     self.note(Flaw::Conservation, (e1 - e).abs(), slack, || format!("in segment {k}"));
@@ -204,7 +202,7 @@ impl<'a> Checker<'a> {
         }
         self.now = outcome.time;
         let group: Vec<Event> = events.copied().collect();
-        self.events(&mut state, &group, None);
+        self.events(&mut state, &group);
         if outcome.motion == Motion::Resting {
             self.support(&outcome.state);
         }
@@ -244,6 +242,8 @@ impl<'a> Checker<'a> {
             .sum();
         let pieces = match segment.motion {
             Motion::Resting => 1,
+            // Each piece is searched once more inside; a short step needs few.
+            _ if length < self.mesh_radius.min(0.01 * self.world.farthest) => 8,
             _ => 32.0f64.max((length / self.mesh_radius.max(0.02 * self.world.farthest)).min(512.0)) as usize,
         };
         let (r, travel) = (self.mesh_radius, length);
@@ -291,127 +291,6 @@ impl<'a> Checker<'a> {
             }
             from = (f, x);
         }
-    }
-
-    /// The directions from all that is touched at `x`, and how much is granted.
-    fn touched(&self, x: &Point3<f64>, slack: f64) -> Vec<(Vector3<f64>, usize)> {
-        let reach = self.mesh_reach + slack;
-        let margin = Vector3::repeat(reach);
-        let mut all: Vec<(Vector3<f64>, usize)> = Vec::new();
-        for i in self.world.near(&(x - margin), &(x + margin)) {
-            let w = -self.world.to_triangle(i, x);
-            if w.norm() <= reach && w.norm() > 0.0 {
-                all.push((w.normalize(), self.world.triangles[i as usize].1));
-            }
-        }
-        for (p, n, surface) in &self.world.planes {
-            let d = n.dot(&(x - p));
-            if d.abs() <= self.radius + slack {
-                let i = self.world.planes.iter().position(|q| q.2 == *surface).unwrap_or(0);
-                all.push((n * self.sides[i], *surface));
-            }
-        }
-        all
-    }
-
-    fn events(&mut self, state: &mut State, group: &[Event], _: Option<f64>) {
-        for (i, e) in group.iter().enumerate() {
-            let exact = self.scene.drag.is_none();
-            let slack = self.slack(&e.position, 0.0) * 4.0;
-            let touched = self.touched(&e.position, slack);
-            let speed = e.velocity_in.norm();
-            let rounding = 256.0 * U * speed + f64::MIN_POSITIVE;
-            if matches!(e.kind, EventKind::Impact | EventKind::Rest | EventKind::Slide) {
-                if touched.is_empty() {
-                    let r = self.mesh_radius;
-                    let d = self.world.distance(&e.position, 1e3 * r);
-                    self.note(Flaw::FalseContact, 1.0, 0.5, || {
-                        format!("{:?} at {:?}: {d:e} from the nearest, r = {:e}", e.kind, e.position, r)
-                    });
-                } else {
-                    let away = touched.iter().map(|(n, _)| (n - e.normal).norm()).fold(2.0, f64::min);
-                    let angle = (64.0 * slack / self.mesh_radius).sqrt() + 1e-12;
-                    self.note(Flaw::Normal, away, angle, || format!("{e:?}"));
-                }
-            }
-            if e.kind == EventKind::Impact {
-                let same = |o: &Event| {
-                    o.kind == EventKind::Impact && o.velocity_in == e.velocity_in && o.velocity == e.velocity
-                };
-                let together = group.iter().filter(|o| same(o)).count();
-                let first = group.iter().position(same) == Some(i);
-                if first {
-                    let jump = (e.velocity_in - state.velocity).norm();
-                    let reach = self.world.farthest.max(e.position.coords.amax()) + self.radius;
-                    // Around a small ball, rounding of its position turns the normal that the velocity is held along.
-                    let turn = slack / self.mesh_radius;
-                    let allowed = (1e-9 + turn) * speed + (8192.0 * U * self.gravity.norm() * reach).sqrt();
-                    let jump = if self.settled { 0.0 } else { jump };
-                    self.note(Flaw::Velocity, jump, allowed, || format!("{:?} -> {:?}", state.velocity, e.velocity_in));
-                    let gain = e.velocity.norm_squared() - e.velocity_in.norm_squared();
-                    self.note(Flaw::EnergyUp, gain, 64.0 * U * speed * speed, || format!("at impact {e:?}"));
-                }
-                state.velocity = e.velocity;
-                let angle =
-                    (64.0 * (slack + self.mesh_reach - self.mesh_radius) / self.mesh_radius).sqrt().min(0.2) + 1e-9;
-                let alone = together == 1 && touched.iter().all(|(n, _)| (n - e.normal).norm() <= angle);
-                if alone && exact {
-                    let m = &self.scene.surfaces[e.surface].material;
-                    let c_r = m.restitution.coefficient();
-                    let (a, b) = (e.normal.dot(&e.velocity_in), e.normal.dot(&e.velocity));
-                    self.note(Flaw::Restitution, (b + c_r * a).abs(), rounding, || format!("{e:?}"));
-                    let (ta, tb) = (e.velocity_in - e.normal * a, e.velocity - e.normal * b);
-                    let cut = match m.friction {
-                        Friction::None => 0.0,
-                        Friction::Linear(c) => c.get() * ta.norm(),
-                        Friction::Coulomb(mu) => mu.get() * -a,
-                        Friction::Impulse(mu) => mu.get() * (1.0 + c_r) * -a,
-                    };
-                    let want = if ta.norm() > cut { ta * (1.0 - cut / ta.norm()) } else { Vector3::zeros() };
-                    self.note(Flaw::Friction, (tb - want).norm(), rounding * 4.0, || format!("{e:?} want {want:?}"));
-                }
-            }
-            if e.kind == EventKind::Rest {
-                state.velocity = Vector3::zeros();
-            }
-        }
-    }
-
-    /// A resting ball: what it touches can carry its weight, and friction what is left of it.
-    fn support(&mut self, state: &State) {
-        let slack = self.slack(&state.position, 0.0) * 4.0;
-        let touched = self.touched(&state.position, slack);
-        let g = self.gravity;
-        if touched.is_empty() {
-            self.note(Flaw::Hovering, 1.0, 0.5, || format!("rests at {:?}", state.position));
-            return;
-        }
-        if self.scene.drag.is_some() {
-            return;
-        }
-        // Gauss's principle by Gauss and Seidel: loads >= 0 that leave as little acceleration as can be.
-        let mut loads = vec![0.0; touched.len()];
-        let mut left = g;
-        for _ in 0..20_000 {
-            for ((n, _), load) in touched.iter().zip(&mut loads) {
-                let more: f64 = -n.dot(&left);
-                let new = (*load + more).max(0.0);
-                left += n * (new - *load);
-                *load = new;
-            }
-        }
-        let mut friction = 0.0;
-        for ((_, surface), load) in touched.iter().zip(&loads) {
-            match self.scene.surfaces[*surface].material.friction.in_contact() {
-                ContactFriction::Sliding(mu) => friction += mu * load,
-                ContactFriction::Sticking if *load > 0.0 => return,
-                ContactFriction::Sticking => {}
-            }
-        }
-        let angle = (64.0 * slack / self.mesh_radius).sqrt() + 1e-9;
-        self.note(Flaw::Unsupported, left.norm() - friction, angle * g.norm() + f64::MIN_POSITIVE, || {
-            format!("left {left:?}, friction {friction:e}, {} touched at {:?}", touched.len(), state.position)
-        });
     }
 }
 

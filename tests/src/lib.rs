@@ -5,6 +5,7 @@ pub mod checker;
 pub mod data;
 pub mod exact;
 pub mod grid;
+pub mod hunt;
 pub mod nasty;
 pub mod obj;
 pub mod oracle;

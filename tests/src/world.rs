@@ -3,6 +3,7 @@
 use crate::grid::Grid;
 use carom_dynamics::scene::Scene;
 use carom_dynamics::surface::Shape;
+use carom_geometry::mesh::Mesh;
 use nalgebra::{Point3, Vector3};
 
 /// Unit roundoff.
@@ -37,6 +38,16 @@ impl World {
                 }
             }
         }
+        Self::from_parts(triangles, planes)
+    }
+
+    /// A mesh alone, as surface 0.
+    pub fn of_mesh(mesh: &Mesh) -> Self {
+        let v = mesh.vertices();
+        Self::from_parts(mesh.faces().iter().map(|f| (f.map(|k| v[k as usize]), 0)).collect(), Vec::new())
+    }
+
+    fn from_parts(triangles: Vec<([Point3<f64>; 3], usize)>, planes: Vec<(Point3<f64>, Vector3<f64>, usize)>) -> Self {
         let boxes: Vec<_> = triangles.iter().map(|([a, b, c], _)| (a.inf(b).inf(c), a.sup(b).sup(c))).collect();
         let corners = triangles.iter().flat_map(|(t, _)| t).chain(planes.iter().map(|(p, ..)| p));
         let farthest = corners.fold(0.0, |m: f64, p| m.max(p.coords.amax()));

@@ -11,7 +11,8 @@ use carom_geometry::clearance::{Clearance, Entry};
 use carom_geometry::contact::{Hold, MovingBall};
 use carom_geometry::plane::Side;
 use carom_geometry::rounding::contact_doubt;
-use carom_geometry::sweep::{Bend, RegionBound, Site, Work};
+use carom_geometry::site::{Bend, RegionBound, Site};
+use carom_geometry::sweep::Work;
 use nalgebra::{Point3, Vector3};
 
 /// The earliest collision of a step.
@@ -275,7 +276,10 @@ impl<'a> Obstacles<'a> {
         let mut contacts = Contacts::new();
         for c in all {
             let same = |kept: &Contact| {
-                let angle = merge_angle_squared(tolerance, self.radius_at(kept).min(self.radius_at(&c)));
+                // The normals of planes and faces do not depend on where rounding put the ball: two of them are two.
+                let exact = self.bend(kept) == Bend::Flat && self.bend(&c) == Bend::Flat;
+                let radius = if exact { 0.0 } else { self.radius_at(kept).min(self.radius_at(&c)) };
+                let angle = merge_angle_squared(tolerance, radius);
                 (kept.normal - c.normal).norm_squared() <= angle
             };
             if !contacts.is_full() && !contacts.iter().any(same) {

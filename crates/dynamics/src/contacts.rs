@@ -1,7 +1,7 @@
 //! What a ball touches: surfaces with their normals, and how fast it leaves them.
 
 use arrayvec::ArrayVec;
-use carom_geometry::sweep::Site;
+use carom_geometry::site::Site;
 use nalgebra::Vector3;
 
 /// More contacts than this at one instant never change the answer: three normals carry any load.

@@ -13,7 +13,7 @@ use crate::integrators::adaptive::Adaptive;
 use crate::integrators::{Step, exact};
 use crate::support::{Projection, project_offset};
 use crate::tolerance::{parallel, rate_rounding};
-use carom_geometry::sweep::Bend;
+use carom_geometry::site::Bend;
 use nalgebra::{Point3, Vector3};
 
 /// A contact that may carry the ball.

@@ -48,5 +48,6 @@ pub mod clearance;
 pub mod path;
 pub mod mesh;
 pub mod doctor;
+pub mod site;
 pub mod contact;
 pub mod sweep;

@@ -1,6 +1,4 @@
-//! A moving ball against a mesh: the first contact, what is touched there, and how far each face, edge and vertex carries.
-
-mod bend;
+//! A moving ball against a mesh: the first contact, and what is touched there.
 
 use crate::bounds::Aabb;
 use crate::bvh::FatSegment;
@@ -8,39 +6,9 @@ use crate::closest::{Feature, closest_point};
 use crate::contact::{Contact, MovingBall, contact_from};
 use crate::mesh::{Fold, Mesh};
 use crate::rounding::{contact_doubt, position_bound};
-pub use bend::Bend;
+use crate::site::Site;
 use nalgebra::{Point3, Vector3};
 use std::cmp::Ordering;
-
-/// A place of a mesh: a face, an edge or a vertex. Each edge and vertex has one name, whichever face it was found by.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Site {
-    /// A face, by its number.
-    Face(u32),
-    /// Edge `edge` (from corner `edge` to the next) of the lowest-numbered face that has it.
-    Edge {
-        /// The face.
-        face: u32,
-        /// 0, 1 or 2.
-        edge: u8,
-    },
-    /// A vertex, by its number, and the lowest-numbered face at it.
-    Vertex {
-        /// The vertex.
-        vertex: u32,
-        /// The face.
-        face: u32,
-    },
-}
-
-impl Site {
-    /// The face, or for an edge or a vertex the lowest-numbered face that has it.
-    pub fn face(&self) -> u32 {
-        match *self {
-            Site::Face(face) | Site::Edge { face, .. } | Site::Vertex { face, .. } => face,
-        }
-    }
-}
 
 /// The first contact of a ball with a mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,17 +26,6 @@ pub struct Touch {
     pub site: Site,
     /// Unit normal from the mesh to the centre of the ball.
     pub normal: Vector3<f64>,
-}
-
-/// A bound of the region that belongs to a place: where the ball crosses it, another place carries on.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RegionBound {
-    /// Unit normal out of the region.
-    pub outward: Vector3<f64>,
-    /// A point of the bounding plane.
-    pub point: Point3<f64>,
-    /// The place on the other side.
-    pub next: Site,
 }
 
 /// What a query looked at.
@@ -199,36 +156,6 @@ impl Mesh {
         above.abs() >= height && (if above > 0.0 { fold } else { fold.from_back() }) == Fold::Concave
     }
 
-    /// The one name of what is touched at a feature of `face`.
-    fn site(&self, face: u32, feature: Feature) -> Site {
-        match feature {
-            Feature::Edge(edge) if self.fold(face, edge.into()) != Fold::Flat => self.edge_site(face, edge),
-            Feature::Vertex(corner) if !self.is_level(self.faces()[face as usize][corner as usize]) => {
-                self.vertex_site(self.faces()[face as usize][corner as usize])
-            }
-            // A border inside a plane is none.
-            Feature::Face | Feature::Edge(_) | Feature::Vertex(_) => Site::Face(face),
-        }
-    }
-
-    fn edge_site(&self, face: u32, edge: u8) -> Site {
-        let (face, side) = self.edge(face, edge.into()).owner;
-        Site::Edge { face, edge: side as u8 }
-    }
-
-    fn vertex_site(&self, vertex: u32) -> Site {
-        Site::Vertex { vertex, face: self.vertex_faces(vertex).first().copied().unwrap_or(0) }
-    }
-
-    /// The ends of an edge, the one with the lower coordinates first: the same bits from whichever face it is seen, and however that is
-    /// wound.
-    fn edge_ends(&self, face: u32, edge: u8) -> [u32; 2] {
-        let corners = self.faces()[face as usize];
-        let [a, b] = [corners[edge as usize], corners[(edge as usize + 1) % 3]];
-        let at = |v: u32| self.vertices()[v as usize];
-        if at(a).coords.as_slice() <= at(b).coords.as_slice() { [a, b] } else { [b, a] }
-    }
-
     /// Whether `site` is a part of the border of `other`, which is touched itself.
     fn hides(&self, other: &Site, site: &Site) -> bool {
         match (*other, *site) {
@@ -256,118 +183,8 @@ impl Mesh {
         }
     }
 
-    /// The bounds of the region in which `site` is what of the mesh is nearest to a ball beside it.
-    pub fn region(&self, site: Site) -> Vec<RegionBound> {
-        let vertex = |v: u32| self.vertices()[v as usize];
-        match site {
-            Site::Face(face) => (0..3u8)
-                .filter_map(|edge| {
-                    let outward = self.out_of(face, edge)?;
-                    let flat = self.fold(face, edge.into()) == Fold::Flat;
-                    let next = match self.neighbours(face, edge.into()).next() {
-                        Some(other) if flat => Site::Face(other),
-                        _ => self.edge_site(face, edge),
-                    };
-                    Some(RegionBound { outward, point: vertex(self.edge_ends(face, edge)[0]), next })
-                })
-                .collect(),
-            Site::Edge { face, edge } => {
-                let [a, b] = self.edge_ends(face, edge);
-                let mut bounds = Vec::new();
-                if let Some(along) = (vertex(b) - vertex(a)).try_normalize(0.0) {
-                    bounds.push(RegionBound { outward: -along, point: vertex(a), next: self.vertex_site(a) });
-                    bounds.push(RegionBound { outward: along, point: vertex(b), next: self.vertex_site(b) });
-                }
-                for other in self.faces_at(site) {
-                    let local = (0..3).find(|&i| self.edge_ends(other, i) == [a, b]);
-                    if let Some(outward) = local.and_then(|i| self.out_of(other, i)) {
-                        bounds.push(RegionBound { outward: -outward, point: vertex(a), next: Site::Face(other) });
-                    }
-                }
-                bounds
-            }
-            Site::Vertex { vertex: v, .. } => {
-                let mut bounds: Vec<RegionBound> = Vec::new();
-                for &face in self.vertex_faces(v) {
-                    for edge in 0..3u8 {
-                        let [a, b] = self.edge_ends(face, edge);
-                        let far = if a == v { b } else { a };
-                        let next = self.edge_site(face, edge);
-                        if (a == v || b == v)
-                            && bounds.iter().all(|bound| bound.next != next)
-                            && let Some(outward) = (vertex(far) - vertex(v)).try_normalize(0.0)
-                        {
-                            bounds.push(RegionBound { outward, point: vertex(v), next });
-                        }
-                    }
-                }
-
-                bounds
-            }
-        }
-    }
-
-    /// The unit vector in the plane of `face` that leads out of it across `edge`.
-    fn out_of(&self, face: u32, edge: u8) -> Option<Vector3<f64>> {
-        let [a, b] = self.edge_ends(face, edge).map(|v| self.vertices()[v as usize]);
-        let opposite = self.triangle(face)[(edge as usize + 2) % 3];
-        let normal = self.normal(face)?.into_inner();
-        let outward = (b - a).cross(&normal).try_normalize(0.0)?;
-        // The normal of a face declared planar need not go with its winding.
-        Some(if outward.dot(&(opposite - a)) > 0.0 { -outward } else { outward })
-    }
-
-    /// The faces that `site` is, or that meet in it.
-    pub fn faces_at(&self, site: Site) -> Vec<u32> {
-        match site {
-            Site::Face(face) => vec![face],
-            Site::Edge { face, edge } => std::iter::once(face).chain(self.neighbours(face, edge.into())).collect(),
-            Site::Vertex { vertex, .. } => self.vertex_faces(vertex).to_vec(),
-        }
-    }
-
     /// About the length of a side of a face, from the size of the mesh and the number of faces.
     fn face_size(&self) -> f64 {
         self.bounds().extent().amax() / (self.faces().len() as f64).sqrt()
-    }
-
-    /// How `site` curves: the directions in which the surface a ball rolls over it on is straight. A face is flat, across an edge and
-    /// around a vertex the centre moves on a circle of the ball's radius.
-    pub fn bend(&self, site: Site) -> Bend {
-        match site {
-            Site::Face(_) => Bend::Flat,
-            Site::Edge { face, edge } if self.fold(face, edge.into()) == Fold::Flat => Bend::Flat,
-            Site::Edge { face, edge } => {
-                let [a, b] = self.edge_ends(face, edge).map(|v| self.vertices()[v as usize]);
-                match (b - a).try_normalize(0.0) {
-                    Some(along) => Bend::Around { point: a, along },
-                    None => Bend::About { point: a },
-                }
-            }
-            Site::Vertex { vertex, .. } => Bend::About { point: self.vertices()[vertex as usize] },
-        }
-    }
-
-    /// A point of `site`.
-    pub fn anchor(&self, site: Site) -> Point3<f64> {
-        match site {
-            Site::Face(face) => self.triangle(face)[0],
-            Site::Edge { face, edge } => self.triangle(face)[edge as usize],
-            Site::Vertex { vertex, .. } => self.vertices()[vertex as usize],
-        }
-    }
-
-    /// Where `site` is nearest to `centre`, taken as an infinite plane or line, and the unit normal from there to `centre`.
-    /// None where the centre lies on it.
-    pub fn foot(&self, site: Site, centre: &Point3<f64>) -> Option<(Point3<f64>, Vector3<f64>)> {
-        let Some(away) = self.bend(site).away_from(centre) else {
-            let face = site.face();
-            // From the lowest of its vertices: the same bits with whichever of them the face begins.
-            let [a, b, c] = self.faces()[face as usize];
-            let (n, point) = (self.normal(face)?.into_inner(), self.vertices()[a.min(b).min(c) as usize]);
-            let height = n.dot(&(centre - point));
-            return Some((centre - n * height, if height < 0.0 { -n } else { n }));
-        };
-        away.try_normalize(0.0).map(|n| (centre - away, n))
     }
 }

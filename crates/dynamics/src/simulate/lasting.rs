@@ -11,7 +11,7 @@ use crate::response::changed_rate;
 use crate::sliding::{Balance, Carrier, Slide, is_lifted, slide};
 use crate::tolerance::{PATIENCE, PATIENCE_WITH_HOPS, SLIDING_TOLERANCE, least_hop, rate_rounding, time_resolution};
 use carom_geometry::rounding::position_bound;
-use carom_geometry::sweep::{Bend, RegionBound, Site};
+use carom_geometry::site::{Bend, RegionBound, Site};
 use nalgebra::Vector3;
 
 /// Faces of one plane that a stretch of sliding crosses before it is cut after all.

@@ -1,0 +1,58 @@
+//! Random balls in real meshes and nasty small scenes, each run checked by brute force: continuity, distance, side, energy, laws, rest.
+
+use carom_tests::hunt::Hunt;
+
+/// Runs `count` balls of a family of scenes; fails with each flaw of each ball, and if too few balls found a place to start.
+fn soak(family: &str, count: u64) {
+    let hunt = Hunt::default();
+    let (mut ran, mut bad) = (0, Vec::new());
+    for seed in 0..count {
+        let Some(run) = hunt.run(family, seed) else { continue };
+        ran += 1;
+        if !run.is_sound() {
+            bad.push(format!("{family} {seed}: {:?} {:#?}", run.outcome.ending, run.flaws));
+        }
+    }
+    assert!(bad.is_empty(), "{} unsound runs:\n{}", bad.len(), bad.join("\n"));
+    assert!(4 * ran >= 3 * count, "only {ran} of {count} balls found a place");
+}
+
+#[test]
+fn r27_balls_stay_inside_the_cow() {
+    soak("spot", 60);
+}
+
+#[test]
+fn r27_balls_stay_on_their_side_of_the_bunny() {
+    soak("bunny", 80);
+}
+
+#[test]
+fn r33_balls_on_the_stairs() {
+    soak("stairs", 80);
+}
+
+#[test]
+fn r32_balls_settle_on_the_terrain() {
+    soak("terrain", 80);
+}
+
+#[test]
+fn r47_balls_from_points_to_boulders_on_the_mountains() {
+    soak("jacksboro", 40);
+}
+
+#[test]
+fn h7_balls_among_random_triangles_and_needles() {
+    soak("soup", 150);
+}
+
+#[test]
+fn h29_balls_in_wedges() {
+    soak("wedge", 150);
+}
+
+#[test]
+fn r12_balls_in_boxes_near_and_far_from_the_origin() {
+    soak("box", 100);
+}
