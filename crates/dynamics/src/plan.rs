@@ -177,10 +177,10 @@ fn check_range(scene: &Scene, size: &Size, has_meshes: bool) -> Result<(), Scene
     let largest =
         [("the largest coordinate (m)", size.farthest), ("a speed (m/s)", speed), ("gravity (m/s^2)", gravity)];
     if let Some((what, value)) = largest.into_iter().find(|(_, value)| *value > LARGEST) {
-        return refuse(what, value, "at most 2^500 (3e150)");
+        return refuse(what, value, "at most 2^500");
     }
     if has_meshes && size.extent < SMALLEST {
-        return refuse("the size of a scene with polygons or meshes (m)", size.extent, "at least 2^-450 (3e-136)");
+        return refuse("the size of a scene with polygons or meshes (m)", size.extent, "at least 2^-450");
     }
     Ok(())
 }

@@ -52,7 +52,8 @@ fn wavy_sheet() -> Figure {
     let mut random = Random::new(0x91);
     let mut bound = Bound::default();
     let vertex = |i: u32, j: u32| Point3::new(f64::from(i) - 4.0, f64::from(j) - 4.0, height(i, j));
-    let (mut faces, mut ridges): (Vec<[Point3<f64>; 3]>, Vec<[Point3<f64>; 2]>) = (Vec::new(), Vec::new());
+    let mut faces: Vec<[Point3<f64>; 3]> = Vec::new();
+    let mut ridges: Vec<[Point3<f64>; 2]> = Vec::new();
     for i in 0..CELLS {
         for j in 0..CELLS {
             let [p0, p1, p2, p3] = [vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)];
@@ -131,7 +132,7 @@ fn soup(faces: &[[Point3<f64>; 3]]) -> Solid {
 fn star() -> Vec<Point2<f64>> {
     let tip = |k: u32| {
         let angle = f64::from(k) * std::f64::consts::TAU / 10.0;
-        let r = if k % 2 == 0 { 1.0 } else { 0.35 };
+        let r = if k.is_multiple_of(2) { 1.0 } else { 0.35 };
         Point2::new(r * angle.cos(), r * angle.sin())
     };
     (0..10).map(tip).collect()
