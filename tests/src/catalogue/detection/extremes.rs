@@ -26,7 +26,7 @@ pub(super) fn cases() -> Vec<Case> {
         Case {
             id: "H11",
             title: "floors and triangles 1e8 m from the origin, ulp 1.5e-8 m",
-            elsewhere: "parry casts drift by metres (#429); this prototype's own iteration once stopped 3.8e-5 m early",
+            elsewhere: "GJK casts lose what the coordinates have too much (parry #429)",
             bound: "16 u L/|v_n| on planes; none missed, none late, none beyond 8 u L on triangles",
             run: far_away,
         },
