@@ -6,7 +6,7 @@ use carom_geometry::contact::{Contact, MovingBall, first_contact};
 use carom_geometry::mesh::Mesh;
 use carom_geometry::path::Path;
 use carom_geometry::predicates::{Sign, orient2d};
-use carom_geometry::rounding::{UNIT_ROUNDOFF, contact_doubt};
+use carom_geometry::rounding::{UNIT_ROUNDOFF, contact_bound, contact_doubt};
 use carom_geometry::segment::{SegmentHit, segment_hits_triangle};
 use carom_geometry::sweep::Work;
 use carom_tests::data::{csv, number, read};
@@ -274,7 +274,9 @@ fn exact_cases(category: &str) -> Vec<(Contact, Option<(f64, f64)>)> {
 fn physx597_a_ball_meets_the_edge() {
     let [(contact, Some((low, high)))] = exact_cases("physx597")[..] else { panic!("one hit") };
     assert!(matches!(contact, Contact::At { feature: Feature::Edge(1), .. }));
-    assert!(time(contact) <= high && low - time(contact) <= 1e-12, "{contact:?}");
+    // To the rounding of coordinates of 80 m that move by 0.15 m a second.
+    let late = (time(contact) - high) * 0.15;
+    assert!(late <= contact_bound(81.0) && low - time(contact) <= 1e-12, "{contact:?}");
 }
 
 #[test]

@@ -57,7 +57,11 @@ fn h03_grazes_of_vertices_and_edges_are_hits_down_to_doubt() {
                     let (want, slope) = (number(&row[5]), number(&row[6]) * speed);
                     // Distance from a convex body is convex along a line: what is early by t is slope t or more from touching.
                     let away = (want - f) * slope;
-                    assert!(f <= want && away <= doubt, "{row:?}: {f:e} is {away:e} from touching, above {doubt:e}");
+                    // Late by one bound at most, which is a fifth of the doubt.
+                    assert!(
+                        (-0.2 * doubt..=doubt).contains(&away),
+                        "{row:?}: {f:e} is {away:e} from touching, above {doubt:e}"
+                    );
                     assert_eq!(found, feature, "{row:?}");
                     worst = worst.max(away / doubt);
                 }

@@ -6,6 +6,7 @@ use crate::stage::{Run, Stage, smooth};
 use carom_dynamics::events::{EventKind, Motion};
 use carom_dynamics::scene::Method;
 use carom_geometry::rounding::UNIT_ROUNDOFF;
+use nalgebra::{Point3, Vector3};
 
 pub(super) fn cases() -> Vec<Case> {
     vec![
@@ -83,6 +84,19 @@ fn leaving_a_plane() -> Figure {
     bound.figure(format!("{count} starts: off by {:.2} u at worst, none at 0", worst.0))
 }
 
+/// What of an event does not depend on how the faces are numbered.
+pub(super) type Bits = (f64, EventKind, Point3<f64>, Vector3<f64>, Vector3<f64>);
+
+/// The events of a run as seen from `from`.
+pub(super) fn bits_from(run: &Run, from: &Vector3<f64>) -> Vec<Bits> {
+    run.trajectory.events.iter().map(|e| (e.time, e.kind, e.position - from, e.normal, e.velocity)).collect()
+}
+
+/// The events of a run.
+pub(super) fn bits(run: &Run) -> Vec<Bits> {
+    bits_from(run, &Vector3::zeros())
+}
+
 /// What no run may have: an impact repeated at one time on one surface, or one without closing speed.
 pub(super) fn keep_events_apart(bound: &mut Bound, run: &Run, what: &str) {
     let impacts = run.impacts();
@@ -128,8 +142,8 @@ fn no_event_twice() -> Figure {
 }
 
 /// A square of two triangles around the origin, its diagonal through it.
-fn square() -> (Vec<nalgebra::Point3<f64>>, Vec<[u32; 3]>) {
-    let corner = |x: f64, y: f64| nalgebra::Point3::new(x, y, 0.0);
+fn square() -> (Vec<Point3<f64>>, Vec<[u32; 3]>) {
+    let corner = |x: f64, y: f64| Point3::new(x, y, 0.0);
     (vec![corner(-8.0, -8.0), corner(8.0, -8.0), corner(8.0, 8.0), corner(-8.0, 8.0)], vec![[0, 1, 2], [0, 2, 3]])
 }
 
@@ -163,7 +177,7 @@ fn leaving_a_mesh() -> Figure {
 }
 
 /// The least clearance seen at 64 places of every segment, and whether separation only grows after the first event.
-fn depths(run: &Run, clearance: impl Fn(&nalgebra::Point3<f64>) -> f64) -> Vec<f64> {
+fn depths(run: &Run, clearance: impl Fn(&Point3<f64>) -> f64) -> Vec<f64> {
     let segments = run.trajectory.segments.iter();
     segments
         .flat_map(|s| (0..=64).map(move |k| s.step.at(s.to * f64::from(k) / 64.0).position))

@@ -2,7 +2,7 @@
 
 use super::super::{Bound, Case, Figure, Worst};
 use super::solids::{Solid, icosphere, moved, triangles};
-use super::start::keep_events_apart;
+use super::start::{bits, keep_events_apart};
 use crate::random::Random;
 use crate::stage::{Run, Stage, smooth};
 use carom_dynamics::events::Ending;
@@ -217,13 +217,6 @@ fn tip_in_every_order() -> Figure {
             bound
                 .keep((hit.normal - n).amax() <= 4.0 * UNIT_ROUNDOFF, || format!("{order:?}: normal {:?}", hit.normal));
             let same = first.get_or_insert_with(|| run.clone());
-            let bits = |run: &Run| {
-                run.trajectory
-                    .events
-                    .iter()
-                    .map(|e| (e.time, e.kind, e.position, e.normal, e.velocity))
-                    .collect::<Vec<_>>()
-            };
             bound.keep(bits(same) == bits(&run), || format!("{order:?} turned by {turn}: another run"));
             orders += 1;
         }
