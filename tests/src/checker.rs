@@ -118,7 +118,7 @@ impl<'a> Checker<'a> {
         let ratio = if amount <= 0.0 { 0.0 } else { amount / allowed };
         let worst = self.worst.entry(flaw).or_insert(0.0);
         *worst = worst.max(ratio);
-        if !(ratio <= 1.0) {
+        if ratio > 1.0 || ratio.is_nan() {
             self.findings.push(Finding { flaw, time: self.now, amount, allowed, note: note() });
         }
     }
@@ -184,10 +184,8 @@ impl<'a> Checker<'a> {
             // A settling ball flies along its surface.
             let bent = segment.step.velocity[1] != self.gravity * segment.step.seconds;
             self.settled = segment.motion == Motion::Flying && bent && segment.step.exact;
-            if exact && segment.motion == Motion::Flying {
-                if !self.settled {
-                    self.note(Flaw::Conservation, (e1 - e).abs(), slack, || format!("in segment {k}"));
-                }
+            if exact && segment.motion == Motion::Flying && !self.settled {
+                self.note(Flaw::Conservation, (e1 - e).abs(), slack, || format!("in segment {k}"));
             }
             if closed && (k % every == 0 || k + 1 == run.segments.len()) {
                 let now = self.world.winding(&end.position);

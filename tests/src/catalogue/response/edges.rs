@@ -63,8 +63,9 @@ enum Cut {
 fn triangulations() -> [(&'static str, Faces); 4] {
     let even = |k: u32| f64::from(k) - 16.0;
     // Steps between 0.5 and 1.5, from one end to the other.
-    let uneven =
-        |k: u32| 16.0 * (f64::from(k) / 16.0 - 1.0) + 0.3 * f64::from(k * 7 % 5) * f64::from(u32::from(k % 32 != 0));
+    let uneven = |k: u32| {
+        16.0 * (f64::from(k) / 16.0 - 1.0) + 0.3 * f64::from(k * 7 % 5) * f64::from(u32::from(!k.is_multiple_of(32)))
+    };
     let part = |i: u32, j: u32, by: u32| f64::from(1 + (i * by + j * 5) % 7) / 9.0;
     [
         ("regular", grid(even, |_, _| Cut::Rising)),
@@ -93,7 +94,8 @@ fn flat_grid() -> Figure {
     let r = 0.25;
     let (mut runs, mut events, mut samples) = (0, 0, 0);
     // Rolling as in the report; along lines and through vertices; braking; bouncing; bouncing onto vertices.
-    let motions: [(&str, [f64; 3], [f64; 3], f64, Friction); 6] = [
+    type Motion = (&'static str, [f64; 3], [f64; 3], f64, Friction);
+    let motions: [Motion; 6] = [
         ("rolls", [-14.3, -4.2, r], [10.0, 3.1, 0.0], 0.5, Friction::None),
         ("rolls along a line", [-14.5, 2.0, r], [10.0, 0.0, 0.0], 0.5, Friction::None),
         ("rolls through vertices", [-12.0, -12.0, r], [8.0, 8.0, 0.0], 0.5, Friction::None),
