@@ -110,7 +110,13 @@ fn flat_grid() -> Figure {
             check.that(same, || {
                 let first = bits(&run).into_iter().zip(bits(&plane)).position(|(a, b)| a != b);
                 let at = first.map(|i| (run.trajectory.events[i], plane.trajectory.events[i]));
-                format!("{motion}, {name}: {} events, {} on the plane: {at:?} {:?} {:?}", bits(&run).len(), bits(&plane).len(), run.kinds(), run.trajectory.events.iter().map(|e| (e.time, e.position.x, e.normal)).take(8).collect::<Vec<_>>())
+                format!(
+                    "{motion}, {name}: {} events, {} on the plane: {at:?} {:?} {:?}",
+                    bits(&run).len(),
+                    bits(&plane).len(),
+                    run.kinds(),
+                    run.trajectory.events.iter().map(|e| (e.time, e.position.x, e.normal)).take(8).collect::<Vec<_>>()
+                )
             });
             for k in 0..=1000 {
                 let t = 2.5 * f64::from(k) / 1000.0;
