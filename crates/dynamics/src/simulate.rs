@@ -51,6 +51,7 @@ pub fn simulate(plan: &Plan, ball: &Ball, observer: &mut impl Observer) -> Outco
         counters,
         observer,
     };
+    walk.begin();
     while walk.ending.is_none() && walk.clock.until(plan.duration) > 0.0 {
         match walk.motion {
             Motion::Flying => walk.fly(),

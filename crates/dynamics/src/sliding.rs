@@ -87,6 +87,15 @@ impl Balance {
     }
 }
 
+/// The state without what the rounding of a step has left of a motion into or out of `carriers`.
+pub fn tangential(state: &State, carriers: &[Carrier]) -> State {
+    let along = |v: Vector3<f64>, c: &Carrier| {
+        let n = c.normal(&state.position);
+        v - n * n.dot(&v)
+    };
+    State { velocity: carriers.iter().fold(state.velocity, along), ..*state }
+}
+
 /// Whether none of `carriers` is pressed by the acceleration `a` and the motion in `state`, by more than rounding.
 pub fn is_lifted(a: &Vector3<f64>, carriers: &[Carrier], state: &State) -> bool {
     let lift = |c: &Carrier| c.normal(&state.position).dot(a) + c.centripetal(&state.velocity);

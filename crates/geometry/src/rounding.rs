@@ -116,6 +116,19 @@ pub fn planarity_bound(extent: f64, diameter: f64, perimeter: f64, area: f64) ->
     vertex * (2.0 + diameter * (perimeter / area))
 }
 
+/// The sine of the angle by which two triangles of one plane may be folded when each of their coordinates is off by 8 u `extent`, as in
+/// [`planarity_bound`]; their heights over the common edge are `one` and `other`.
+///
+/// A vertex is then at most e = sqrt(3) 8 u `extent` off its place; the third corner and the edge turn a triangle about the edge by
+/// 2 e over its height.
+pub fn fold_bound(extent: f64, one: f64, other: f64) -> f64 {
+    let vertex = 1.75 * 8.0 * UNIT_ROUNDOFF * extent;
+    2.0 * vertex * (1.0 / one + 1.0 / other)
+}
+
+/// Folds of more than this, 2^-30 rad, are never taken to be rounding: a needle says nothing of what lies on its two sides.
+pub(crate) const LARGEST_ROUNDED_FOLD: f64 = 1.0 / (1u64 << 30) as f64;
+
 /// The exponent e of a finite x != 0, 2^e <= |x| < 2^(e+1); -1075 for 0.
 pub fn exponent(x: f64) -> i32 {
     const MANTISSA: u32 = 52;

@@ -1,13 +1,14 @@
 //! Flying: one pass of the slides' loop, and the answer to what is hit.
 
 use super::Walk;
+use crate::body::State;
 use crate::collision::{Hit, Returns};
 use crate::contacts::{Contact, Contacts};
 use crate::events::{Ending, EventKind, Motion};
 use crate::integrators::Step;
 use crate::observer::Observer;
 use crate::response::{collapse, respond};
-use crate::tolerance::{COLLAPSE_AFTER, rate_rounding, touch_distance};
+use crate::tolerance::{COLLAPSE_AFTER, merge_angle_squared, rate_rounding, touch_distance};
 use carom_geometry::clearance::Entry;
 
 impl<O: Observer> Walk<'_, O> {
@@ -55,6 +56,27 @@ impl<O: Observer> Walk<'_, O> {
         unstable
     }
 
+    /// At the start: what the ball lies on or moves along, as nearly as its position tells, it is in contact with.
+    pub(super) fn begin(&mut self) {
+        let tolerance = self.touch_tolerance(0.0);
+        let State { position, velocity } = self.state;
+        let mut contacts = self.obstacles.touching(&position, &velocity, tolerance, &mut self.counters);
+        let rounding = rate_rounding(velocity.norm());
+        contacts.retain(|c| {
+            let gap = self.obstacles.gap(c, &position);
+            c.rate.abs() <= rounding && gap.is_some_and(|gap| gap.abs() <= tolerance)
+        });
+        if contacts.is_empty() {
+            return;
+        }
+        for contact in &mut contacts {
+            contact.rate = 0.0;
+            self.correct(contact, tolerance);
+        }
+        self.contacts = contacts;
+        self.settle();
+    }
+
     /// At a collision: what is touched, how fast, and the answer.
     pub(super) fn arrive(&mut self, step: &Step, hit: Hit, returns: &Returns) {
         let tolerance = self.touch_tolerance(step.path.reach(hit.f)).max(self.obstacles.doubt(step, &hit));
@@ -65,7 +87,7 @@ impl<O: Observer> Walk<'_, O> {
             self.correct(contact, tolerance);
             contact.rate = self.rate(step, hit, contact, &before, returns);
         }
-        let collapses = self.collapses(&mut contacts);
+        let collapses = self.collapses(&mut contacts, tolerance);
         let carried = |c: &Contact| before.iter().any(|b| b.lasting && b.surface == c.surface && b.site == c.site);
         if let Some(contact) = contacts.iter().find(|c| c.rate < 0.0)
             && step.exact
@@ -104,7 +126,8 @@ impl<O: Observer> Walk<'_, O> {
 
     /// Whether contacts that lose energy have answered each other without time passing for so long that there is no end to it; then
     /// `contacts` are all that took part.
-    fn collapses(&mut self, contacts: &mut Contacts) -> bool {
+    fn collapses(&mut self, contacts: &mut Contacts, tolerance: f64) -> bool {
+        let radius = self.forces.ball.radius().max(self.plan.point_radius);
         if self.standstill == 0 {
             self.answered.clear();
         }
@@ -119,7 +142,9 @@ impl<O: Observer> Walk<'_, O> {
             return false;
         }
         for a in &self.answered {
-            if !contacts.is_full() && contacts.iter().all(|c| place(a) != place(c)) {
+            // Of what two faces of one plane answered, once.
+            let apart = |c: &Contact| (a.normal - c.normal).norm_squared() > merge_angle_squared(tolerance, radius);
+            if !contacts.is_full() && contacts.iter().all(|c| place(a) != place(c) && apart(c)) {
                 contacts.push(Contact { rate: a.normal.dot(&self.state.velocity), lasting: false, ..*a });
             }
         }

@@ -8,7 +8,7 @@ use crate::events::{EventKind, Motion};
 use crate::integrators::{Step, exact};
 use crate::observer::Observer;
 use crate::response::changed_rate;
-use crate::sliding::{Balance, Carrier, Slide, is_lifted, slide};
+use crate::sliding::{Balance, Carrier, Slide, is_lifted, slide, tangential};
 use crate::tolerance::{PATIENCE, PATIENCE_WITH_HOPS, SLIDING_TOLERANCE, least_hop, rate_rounding, time_resolution};
 use carom_geometry::rounding::position_bound;
 use carom_geometry::site::{Bend, RegionBound, Site};
@@ -269,7 +269,7 @@ impl<O: Observer> Walk<'_, O> {
             return None;
         }
         let mut lifted = |f: f64| {
-            let state = step.at(f);
+            let state = tangential(&step.at(f), carriers);
             is_lifted(&self.forces.acceleration(&state, &mut self.counters), carriers, &state)
         };
         if !lifted(step.to) {

@@ -1,16 +1,17 @@
-//! How the surface goes on across an edge, decided exactly.
+//! How the surface goes on across an edge, decided exactly but for what the rounding of coordinates leaves of a plane.
 
 use nalgebra::{Point2, Point3, Vector3};
 
 use super::topology::Topology;
 use crate::predicates::{Sign, orient2d, orient3d};
+use crate::rounding::{LARGEST_ROUNDED_FOLD, exponent, fold_bound, scale};
 
 /// How the surface goes on across an edge of a face, seen from the front of the face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fold {
     /// It ends: there is no other face, or the other has no area or lies back on this one.
     Rim,
-    /// It goes on in exactly the same plane, or is declared to.
+    /// It goes on in the same plane, exactly or as nearly as rounded coordinates tell, or is declared to.
     Flat,
     /// It falls away, as at the ridge of a roof: a ball can touch the edge.
     Convex,
@@ -78,6 +79,9 @@ pub(super) fn planar_folds(topology: &mut Topology) {
 
 /// The fold of edge a b of the triangle a b c, of which the neighbour's third corner is d; neither has zero area.
 fn fold([a, b, c]: [&Point3<f64>; 3], d: &Point3<f64>) -> Fold {
+    if is_rounding([a, b, c], d) {
+        return Fold::Flat;
+    }
     match orient3d(a, b, c, d) {
         Sign::Positive => Fold::Concave,
         Sign::Negative => Fold::Convex,
@@ -92,6 +96,22 @@ fn fold([a, b, c]: [&Point3<f64>; 3], d: &Point3<f64>) -> Fold {
             if opposite == Some(true) { Fold::Flat } else { Fold::Rim }
         }
     }
+}
+
+/// Whether the triangles a b c and a b d, on different sides of a b, are in one plane as nearly as their rounded coordinates can tell: a
+/// plane that was turned has folds of some u, and a ball that rolls over them must not know.
+fn is_rounding([a, b, c]: [&Point3<f64>; 3], d: &Point3<f64>) -> bool {
+    let edges = [b - a, c - a, d - a];
+    let size = edges.iter().map(|e| e.amax()).fold(0.0, f64::max);
+    let extent = [a, b, c, d].iter().map(|p| p.coords.amax()).fold(0.0, f64::max);
+    // In a unit in which no product vanishes.
+    let k = -exponent(size);
+    let [ab, ac, ad] = edges.map(|e| e.map(|x| scale(x, k)));
+    let (one, other) = (ab.cross(&ac), ab.cross(&ad));
+    let length = ab.norm();
+    let bound = fold_bound(scale(extent, k), one.norm() / length, other.norm() / length);
+    let sine = (one.dot(&ad) * length).abs();
+    bound <= LARGEST_ROUNDED_FOLD && one.dot(&other) < 0.0 && sine <= bound * one.norm() * other.norm()
 }
 
 /// Gives all faces that hang together by flat edges the normal of the first of them, with the sign of their own.

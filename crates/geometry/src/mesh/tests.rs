@@ -51,8 +51,11 @@ fn the_fold_is_seen_from_the_front_of_each_face() {
 }
 
 #[test]
-fn one_ulp_is_a_fold() {
-    for height in [5e-324, 1e-300, 1e-17] {
+fn what_rounding_may_leave_of_a_plane_is_no_fold_and_more_is() {
+    for height in [5e-324, 1e-300, 1e-17, 2e-15, -1e-17, -2e-15] {
+        assert_eq!(hinge([1.0, 0.0, height], [1, 0, 3]).fold(0, 0), Fold::Flat);
+    }
+    for height in [1e-14, 1e-9, 1.0] {
         assert_eq!(hinge([1.0, 0.0, height], [1, 0, 3]).fold(0, 0), Fold::Concave);
         assert_eq!(hinge([1.0, 0.0, -height], [1, 0, 3]).fold(0, 0), Fold::Convex);
     }
