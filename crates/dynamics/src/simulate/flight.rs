@@ -23,7 +23,7 @@ impl<O: Observer> Walk<'_, O> {
         let rounding = rate_rounding(self.state.velocity.norm());
         let tangential = self.contacts.iter().any(|c| c.rate <= rounding);
         let step = self.integrator.step(&self.forces, &self.state, timestep, tangential, &mut self.counters);
-        if self.diverges(&step) || self.is_unstable(&step) {
+        if self.is_unstable(&step) || self.diverges(&step) {
             return;
         }
         let returns = self.obstacles.returns(&step, &self.contacts, &mut self.counters);
@@ -49,7 +49,8 @@ impl<O: Observer> Walk<'_, O> {
         let Some(calm) = flow.calms_to().filter(|_| self.integrator.timestep().is_some()) else { return false };
         let before = (self.state.velocity - calm).norm() + self.forces.constant.norm() * step.time(step.to);
         let after = (step.end().velocity - calm).norm();
-        let unstable = after > before + rate_rounding(before);
+        // What is not a number is not stable either.
+        let unstable = after.is_nan() || after > before + rate_rounding(before);
         if unstable {
             self.give_up(Ending::UnstableStep, EventKind::UnstableStep);
         }
