@@ -56,26 +56,27 @@ fn leaving(step: &Step, contact: &Contact) -> Clearance {
     Clearance::new(c)
 }
 
-/// The f up to which the path cannot come back to the edge or vertex, bent as `bend`, that it has just left tangentially from distance
-/// `radius`.
+/// The f up to which the path cannot come back to the edge or vertex, bent as `bend`, that it leaves from distance `radius`
+/// with the slope `slope` of its clearance.
 ///
 /// For a parabola |w(f)|^2 - r^2, with w the part across the edge, is a quartic, solved like any clearance. A path of higher degree follows
 /// its parabola closely enough while its further terms take less than a quarter of what the distance gains.
-fn leaves_until(step: &Step, bend: Bend, radius: f64) -> f64 {
+fn leaves_until(step: &Step, bend: Bend, radius: f64, slope: f64) -> f64 {
     let zero = Vector3::zeros();
     let term = |k: usize| step.path.terms().get(k).copied().unwrap_or(zero);
     let away = bend.away_from(&step.path.start()).and_then(|away| away.try_normalize(0.0));
     let Some(w) = away.map(|n| n * radius) else { return 0.0 };
     let (b, c) = (bend.across(&term(0)), bend.across(&term(1)));
-    // The ball touches and leaves tangentially: the terms of order 0 and 1 are zero.
+    // The ball touches: the term of order 0 is zero, and that of order 1 is known from the contact.
+    let leaving = 2.0 * radius * slope;
     let gain = b.norm_squared() + 2.0 * w.dot(&c);
-    let squared = Clearance::new([0.0, 0.0, gain, 2.0 * b.dot(&c), c.norm_squared()]);
+    let squared = Clearance::new([0.0, leaving, gain, 2.0 * b.dot(&c), c.norm_squared()]);
     let until = match squared.first_entry(0.0, step.to) {
         Entry::Never => f64::INFINITY,
         Entry::At { f, .. } => f,
     };
     let further = term(2).norm() + term(3).norm();
-    if further == 0.0 { until } else { until.min(gain / (8.0 * radius * further)) }
+    if further == 0.0 { until } else { until.min((gain / (8.0 * radius * further)).max(0.0)) }
 }
 
 /// One ball among the surfaces of a plan.
@@ -125,18 +126,18 @@ impl<'a> Obstacles<'a> {
                 counters.clearances += 1;
                 let entry = leaving(step, contact).first_entry(0.0, step.to);
                 let until = entry.f().unwrap_or(f64::INFINITY);
-                let curved = self.bend(contact) != Bend::Flat && contact.rate == 0.0;
-                let free = if curved { self.leaves_until(step, contact, counters) } else { until };
+                let curved = self.bend(contact) != Bend::Flat && contact.rate >= 0.0;
+                let free = if curved { self.leaves_until(step, contact, counters).max(until) } else { until };
                 Return { hold: hold(until), entry, free: self.free(contact, free) }
             })
             .collect()
     }
 
-    /// Until when a ball that leaves an edge or vertex tangentially touches none of the faces there: until it comes back to it, or
+    /// Until when a ball that leaves an edge or vertex touches none of the faces there: until it comes back to it, or
     /// enters the region of one of them.
     fn leaves_until(&self, step: &Step, contact: &Contact, counters: &mut Counters) -> f64 {
         let exit = self.exit(step, contact, 0.0, counters).map_or(f64::INFINITY, |(f, _)| f);
-        leaves_until(step, self.bend(contact), self.radius_at(contact)).min(exit)
+        leaves_until(step, self.bend(contact), self.radius_at(contact), leaving(step, contact).rate(0.0)).min(exit)
     }
 
     /// A point of what is touched.
