@@ -24,7 +24,7 @@ pub fn nearest(x: &Exact) -> f64 {
     x.to_f64().value()
 }
 
-/// p(t) = start + terms[0] t + terms[1] t^2 + ..., without a rounding.
+/// p(t) = start + t1 t + t2 t^2 + ... with the terms t1, t2 ..., without a rounding.
 pub fn on_path(start: &Point3<f64>, terms: &[Vector3<f64>], t: f64) -> ExactVector {
     let t = exact(t);
     std::array::from_fn(|i| {
