@@ -33,6 +33,11 @@ pub enum Command {
     /// Prints a short summary on standard error. Events, frames and a summary in JSON are written where asked for; a file
     /// appears only once it is complete.
     Run(RunArgs),
+    /// Show a scene: write a page that plays it in any browser
+    ///
+    /// Simulates the scene and writes one HTML file that needs nothing else, not even a network: surfaces and balls in 3-D, to
+    /// turn, pause, scrub and follow, every impact with its data, energy over time.
+    View(ViewArgs),
     /// List all that is wrong with a scene or a mesh
     ///
     /// A scene (.toml, .json) is read as `run` would read it, and the meshes it names are examined. A mesh (.obj, .stl, .ply)
@@ -54,9 +59,6 @@ pub enum Command {
   carom run room.toml --events events.csv --frames frames.csv --fps 30
   carom run room.toml --balls balls.csv --events - | head")]
 pub struct RunArgs {
-    /// The scene: a .toml or .json file
-    #[arg(value_hint = ValueHint::FilePath)]
-    pub scene: PathBuf,
     /// Write the events (impacts, slides, rests ...) to FILE: .csv or .jsonl; `-` is standard output, as CSV
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub events: Option<PathBuf>,
@@ -69,6 +71,17 @@ pub struct RunArgs {
     /// Write the summary to FILE as JSON; `-` is standard output
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub summary: Option<PathBuf>,
+    /// What to simulate.
+    #[command(flatten)]
+    pub input: SceneArgs,
+}
+
+/// What every command takes that simulates a scene.
+#[derive(Debug, Args)]
+pub struct SceneArgs {
+    /// The scene: a .toml or .json file
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub scene: PathBuf,
     /// Read the balls from FILE instead of the scene; `-` is standard input
     ///
     /// CSV with a header: x,y,z and any of vx,vy,vz,radius,mass, with the defaults of a scene.
@@ -80,6 +93,19 @@ pub struct RunArgs {
     /// Print nothing but errors
     #[arg(long, short)]
     pub quiet: bool,
+}
+
+/// What `view` takes.
+#[derive(Debug, Args)]
+#[command(after_help = "Example:
+  carom view room.toml -o room.html")]
+pub struct ViewArgs {
+    /// Write the page to FILE; `-` is standard output
+    #[arg(long, short, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub output: PathBuf,
+    /// What to simulate.
+    #[command(flatten)]
+    pub input: SceneArgs,
 }
 
 /// What `check` takes.

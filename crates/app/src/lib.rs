@@ -8,9 +8,12 @@ mod commands;
 mod error;
 mod mesh_file;
 mod output;
+mod replay;
 mod scene;
+mod stage;
 mod summary;
 mod terminal;
+mod view;
 
 use clap::Parser;
 use cli::{Cli, Command};
@@ -21,6 +24,7 @@ pub fn main() -> ExitCode {
     let cli = Cli::parse();
     let result = match &cli.command {
         Command::Run(args) => commands::run::run(args),
+        Command::View(args) => commands::view::view(args),
         Command::Check(args) => commands::check::check(args),
         Command::Schema => commands::schema::schema(),
         Command::Materials(args) => commands::materials::materials(args),

@@ -5,6 +5,7 @@ pub mod completions;
 pub mod materials;
 pub mod run;
 pub mod schema;
+pub mod view;
 
 use crate::error::AppError;
 use crate::output::target::Target;
