@@ -7,6 +7,7 @@ mod cli;
 mod commands;
 mod error;
 mod mesh_file;
+mod model;
 mod output;
 mod replay;
 mod scene;
@@ -25,6 +26,7 @@ pub fn main() -> ExitCode {
     let result = match &cli.command {
         Command::Run(args) => commands::run::run(args),
         Command::View(args) => commands::view::view(args),
+        Command::Export(args) => commands::export::export(args),
         Command::Check(args) => commands::check::check(args),
         Command::Schema => commands::schema::schema(),
         Command::Materials(args) => commands::materials::materials(args),

@@ -2,6 +2,7 @@
 
 pub mod check;
 pub mod completions;
+pub mod export;
 pub mod materials;
 pub mod run;
 pub mod schema;
