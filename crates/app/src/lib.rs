@@ -8,6 +8,7 @@ mod commands;
 mod error;
 mod mesh_file;
 mod output;
+pub mod plot;
 mod scene;
 mod summary;
 mod terminal;
