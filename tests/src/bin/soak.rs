@@ -38,7 +38,7 @@ fn main() -> ExitCode {
 /// A whole number, also as `1e8`.
 fn count(word: &str) -> Option<u64> {
     let n: f64 = word.replace('_', "").parse().ok()?;
-    (n >= 0.0 && n <= 1e15 && n.fract() == 0.0).then_some(n as u64)
+    ((0.0..=1e15).contains(&n) && n.fract() == 0.0).then_some(n as u64)
 }
 
 fn bounce(bounces: u64, only: Option<&str>) -> bool {
