@@ -56,4 +56,3 @@ pub mod sliding;
 pub mod observer;
 pub mod simulate;
 pub mod run;
-pub mod accuracy;
