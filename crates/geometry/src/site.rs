@@ -224,3 +224,6 @@ impl Bend {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
