@@ -10,6 +10,7 @@
 
 mod flight;
 mod lasting;
+mod settling;
 
 use crate::body::{Ball, State};
 use crate::clock::Clock;
@@ -45,6 +46,7 @@ pub fn simulate(plan: &Plan, ball: &Ball, observer: &mut impl Observer) -> Outco
         standstill: 0,
         answered: Contacts::new(),
         moved: 0.0,
+        low_hops: 0,
         halvings: 0,
         events: 0,
         ending: None,
@@ -101,6 +103,8 @@ struct Walk<'a, O> {
     answered: Contacts,
     /// Since when, in s.
     moved: f64,
+    /// Impacts in a row after which no hop was high.
+    low_hops: u32,
     /// How often the timestep is halved because the path closes where the ball does not.
     halvings: u32,
     events: u64,
