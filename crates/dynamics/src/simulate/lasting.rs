@@ -48,17 +48,17 @@ impl<O: Observer> Walk<'_, O> {
         }
     }
 
-    /// Tells that sliding begins; whether it begins with rest, the next pass finds out.
-    pub(super) fn begin_sliding(&mut self) {
-        if !self.try_to_rest()
+    /// Tells that sliding begins, or rest; `velocity_in` is the velocity before what ended the bouncing.
+    pub(super) fn begin_sliding(&mut self, velocity_in: Vector3<f64>) {
+        if !self.try_to_rest(velocity_in)
             && let Some(contact) = self.contacts.iter().find(|c| c.lasting).copied()
         {
-            self.tell(EventKind::Slide, &contact, self.state.velocity);
+            self.tell(EventKind::Slide, &contact, velocity_in);
         }
     }
 
     /// The four-part rest test: slow, in contact, pressed, and held by friction. A ball that passes it rests.
-    fn try_to_rest(&mut self) -> bool {
+    fn try_to_rest(&mut self, velocity_in: Vector3<f64>) -> bool {
         self.counters.rest += 1;
         let carriers: Vec<Carrier> = self.lasting_carriers();
         let still = State { velocity: Vector3::zeros(), ..self.state };
@@ -74,7 +74,7 @@ impl<O: Observer> Walk<'_, O> {
             return false;
         }
         let contact = carrier.contact;
-        let velocity_in = std::mem::replace(&mut self.state.velocity, Vector3::zeros());
+        self.state.velocity = Vector3::zeros();
         self.motion = Motion::Resting;
         self.tell(EventKind::Rest, &contact, velocity_in);
         true
@@ -90,7 +90,7 @@ impl<O: Observer> Walk<'_, O> {
         let a = self.forces.acceleration(&self.state, &mut self.counters);
         let balance = Balance::of(&a, &carriers, &self.state);
         let stopping = self.time_to_stop(&carriers, &balance);
-        if self.settling.is_none() && stopping.is_none() && self.try_to_rest() {
+        if self.settling.is_none() && stopping.is_none() && self.try_to_rest(self.state.velocity) {
             return;
         }
         if balance.loads.count() == 0 && self.settling.is_none() {

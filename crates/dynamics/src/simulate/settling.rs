@@ -78,7 +78,7 @@ impl<O: Observer> Walk<'_, O> {
         self.halvings = 0;
         match settling {
             Some(settling) if !several => self.settling = Some(settling),
-            _ if !sliding => self.begin_sliding(),
+            _ if !sliding => self.begin_sliding(before),
             _ => {}
         }
         true
@@ -177,8 +177,9 @@ impl<O: Observer> Walk<'_, O> {
             let contact = self.contacts[settling.contact];
             let material = &self.plan.surfaces[contact.surface].material;
             let c_r = material.restitution.coefficient();
-            self.state.velocity = material.friction.slow_to_the_end(self.state.velocity, settling.closing, c_r);
-            self.begin_sliding();
+            let before = self.state.velocity;
+            self.state.velocity = material.friction.slow_to_the_end(before, settling.closing, c_r);
+            self.begin_sliding(before);
         }
     }
 }
