@@ -23,7 +23,9 @@ use crate::integrators::adaptive::Adaptive;
 use crate::integrators::{Integrator, Step};
 use crate::observer::{Observer, Segment};
 use crate::plan::Plan;
-use crate::tolerance::{EVENT_BUDGET, FARTHEST, MAX_STANDSTILL, SLIDING_TOLERANCE, STEP_BUDGET, time_resolution};
+use crate::tolerance::{
+    EVENT_BUDGET, FARTHEST, MAX_STANDSTILL, ROLLING_TOLERANCE, SLIDING_TOLERANCE, STEP_BUDGET, time_resolution,
+};
 use nalgebra::Vector3;
 
 /// Simulates one ball of `plan` to the end and shows it to `observer`.
@@ -43,6 +45,7 @@ pub fn simulate(plan: &Plan, ball: &Ball, observer: &mut impl Observer) -> Outco
         motion: Motion::Flying,
         settling: None,
         slider: Adaptive::new(SLIDING_TOLERANCE),
+        roller: Adaptive::new(ROLLING_TOLERANCE),
         standstill: 0,
         answered: Contacts::new(),
         moved: 0.0,
@@ -95,8 +98,10 @@ struct Walk<'a, O> {
     contacts: Contacts,
     motion: Motion,
     settling: Option<Settling>,
-    /// Integrates what slides on no straight line.
+    /// Integrates what slides on planes on no straight line.
     slider: Adaptive,
+    /// Integrates what slides around edges and vertices.
+    roller: Adaptive,
     /// Answers in a row that took no time to speak of.
     standstill: u32,
     /// What has been touched since time last passed.

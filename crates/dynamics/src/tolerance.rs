@@ -119,9 +119,12 @@ pub fn parallel(a: &Vector3<f64>, v: &Vector3<f64>) -> bool {
     }
 }
 
-/// Error allowed per step of a sliding motion that has no closed form, relative to the motion. Where a step is cut, in its dense output, energy is
-/// right to rounding; a hundred times more, and it would be seen to grow.
-pub const SLIDING_TOLERANCE: f64 = 1.0e-12;
+/// Error allowed per step of a sliding motion that has no closed form, relative to the motion.
+pub const SLIDING_TOLERANCE: f64 = 1.0e-10;
+
+/// The same around edges and vertices, where nothing need take energy: a hundred times more, and it would be seen to grow where a step is cut,
+/// in its dense output.
+pub const ROLLING_TOLERANCE: f64 = 1.0e-12;
 
 /// Error allowed per step of the adaptive pair where the scene asks for no method: errors of micrometres in a throw of 100 m.
 pub const FLIGHT_TOLERANCE: f64 = 1.0e-9;

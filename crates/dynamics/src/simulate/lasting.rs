@@ -110,7 +110,8 @@ impl<O: Observer> Walk<'_, O> {
             (Some(settling), _) => self.settling_flight(&settling, &carriers, &balance),
             (None, Some(last)) => last,
             (None, None) => {
-                let slider = &mut self.slider;
+                let flat = carriers.iter().all(|c| c.bend == Bend::Flat);
+                let slider = if flat { &mut self.slider } else { &mut self.roller };
                 slide(slider, &self.forces, &self.state, &carriers, &balance, remaining, &mut self.counters)
             }
         };

@@ -166,7 +166,9 @@ impl<O: Observer> Walk<'_, O> {
             exact::step(&self.state, balance.free, seconds)
         } else {
             let (forces, counters) = (&self.forces, &mut self.counters);
-            self.slider.step(&self.state, seconds, |s| Balance::of(&forces.acceleration(s, counters), carriers, s).free)
+            self.slider.step(&self.state, seconds, |s, after| {
+                Balance::of(&forces.acceleration_after(s, after, counters), carriers, s).free
+            })
         };
         Slide { step, stops: step.time(step.to) >= settling.seconds }
     }
