@@ -35,8 +35,8 @@ pub struct Return {
     hold: Hold,
     /// Where, and at what slope.
     pub entry: Entry,
-    /// Faces at the contact, and the f before which the ball cannot touch them again.
-    free: Option<(usize, Vec<u32>, f64)>,
+    /// Where on a mesh the contact is, and the f before which the ball cannot touch the faces there again.
+    free: Option<(usize, Site, f64)>,
 }
 
 /// The returns of one step, one for each contact.
@@ -148,9 +148,9 @@ impl<'a> Obstacles<'a> {
         }
     }
 
-    /// The faces at what is touched, with the f until which the ball is free of them.
-    fn free(&self, contact: &Contact, until: f64) -> Option<(usize, Vec<u32>, f64)> {
-        Some((contact.surface, self.mesh(contact.surface)?.faces_at(contact.site?), until))
+    /// The place of a mesh that is touched, with the f until which the ball is free of its faces.
+    fn free(&self, contact: &Contact, until: f64) -> Option<(usize, Site, f64)> {
+        Some((contact.surface, contact.site?, until))
     }
 
     /// The shape that the centre follows along a contact.
@@ -221,7 +221,7 @@ impl<'a> Obstacles<'a> {
             let mut work = Work::default();
             let free_until = |face: u32| {
                 let of_this = returns.iter().filter_map(|r| r.free.as_ref()).filter(|(s, ..)| s == surface);
-                of_this.filter(|(_, faces, _)| faces.contains(&face)).map(|(.., f)| *f).fold(0.0, f64::max)
+                of_this.filter(|(_, site, _)| mesh.is_at(face, *site)).map(|(.., f)| *f).fold(0.0, f64::max)
             };
             let found = mesh.first_contact(&ball, to, free_until, &mut work);
             counters.add(&work);

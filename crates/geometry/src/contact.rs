@@ -7,7 +7,7 @@
 //! support plane makes it exact for a face and quadratically convergent for edges and vertices.)
 
 use crate::clearance::Entry;
-use crate::closest::{Feature, closest_point};
+use crate::closest::{Asked, Feature};
 use crate::path::Path;
 use crate::rounding::{UNIT_ROUNDOFF, contact_bound, hold_bound};
 use nalgebra::{Point3, Vector3};
@@ -84,17 +84,42 @@ pub(crate) fn contact_from(
     rounds: &mut u64,
 ) -> Contact {
     let path = ball.path;
-    // Everything relative to the start: what is far from the origin costs no digits.
-    let corners = triangle.map(|v| Point3::from(v - path.start()));
-    let size = corners.iter().map(|a| a.coords.amax()).fold(ball.radius, f64::max);
-    let bound_at = |f: f64| contact_bound(size + path.reach(f));
-    // Planes are met on the whole path: a contact at `to` is decided as one before it.
-    let end = to.max(1.0);
-
     let mut f = from;
     for hold in ball.holds {
         if hold.until > f && hold.hides(triangle) {
             f = hold.until;
+        }
+    }
+    if f > to {
+        return Contact::Miss;
+    }
+    // Everything relative to the start: what is far from the origin costs no digits.
+    let start = path.start();
+    let asked = Asked::new(&triangle.map(|v| Point3::from(v - start)));
+    let size = asked.corners().iter().map(|a| a.coords.amax()).fold(ball.radius, f64::max);
+    let bound_at = |f: f64| contact_bound(size + path.reach(f));
+    // Planes are met on the whole path: a contact at `to` is decided as one before it.
+    let end = to.max(1.0);
+    // Never late: a plane is moved towards the ball by the bound that holds where the path meets it.
+    let meets = |gap: f64, normal: &Vector3<f64>, f: f64| {
+        let bound = 2.0 * bound_at(f);
+        let entry = path.clearance(gap - bound, normal).first_entry(f, end);
+        match entry {
+            Entry::At { f: next, .. } if bound_at(next) > bound => {
+                let bound = bound_at(next);
+                (path.clearance(gap - bound, normal).first_entry(f, end), bound)
+            }
+            _ => (entry, bound),
+        }
+    };
+
+    if let Some((gap, normal)) =
+        face_plane(&asked, ball, f).filter(|(gap, n)| path.clearance(*gap, n).at(f) > 2.0 * bound_at(f))
+    {
+        *rounds += 1;
+        match meets(gap, &normal, f).0 {
+            Entry::Never => return Contact::Miss,
+            Entry::At { f: next, .. } => f = next,
         }
     }
     for _ in 0..MAX_ROUNDS {
@@ -102,30 +127,34 @@ pub(crate) fn contact_from(
             return Contact::Miss;
         }
         *rounds += 1;
-        let Support { normal, gap, feature } = Support::at(ball, &corners, f);
-        // Never late: the plane is moved towards the ball by the bound that holds where the path meets it.
-        let mut bound = 2.0 * bound_at(f);
-        let mut entry = path.clearance(gap - bound, &normal).first_entry(f, end);
-        if let Entry::At { f: next, .. } = entry
-            && bound_at(next) > bound
-        {
-            bound = bound_at(next);
-            entry = path.clearance(gap - bound, &normal).first_entry(f, end);
+        let support = Support::at(ball, &asked, f);
+        let plane = path.clearance(support.gap, &support.normal);
+        let (height, falling) = (plane.at(f), plane.rate(f) < 0.0);
+        if height <= 2.0 * bound_at(f) && falling {
+            return Contact::At { feature: support.feature, f: polish(ball, &asked, support, f, end, rounds) };
         }
+        let (entry, bound) = meets(support.gap, &support.normal, f);
         let Entry::At { f: next, .. } = entry else {
             return Contact::Miss;
         };
-        let plane = path.clearance(gap, &normal);
-        let touching = plane.at(f) <= 2.0 * bound && plane.rate(f) < 0.0;
-        if touching || next - f <= 2.0 * UNIT_ROUNDOFF * f {
-            return Contact::At { f: polish(ball, &corners, f, end, rounds), feature };
+        if (height <= 2.0 * bound && falling) || next - f <= 2.0 * UNIT_ROUNDOFF * f {
+            return Contact::At { feature: support.feature, f: polish(ball, &asked, support, f, end, rounds) };
         }
         f = next;
     }
     if f > to {
         return Contact::Miss;
     }
-    Contact::At { f, feature: Support::at(ball, &corners, f).feature }
+    Contact::At { f, feature: Support::at(ball, &asked, f).feature }
+}
+
+/// The distance between the ball at the start and the plane of the triangle, seen from the side the ball is on at `f`, and the normal
+/// to there. While the ball has not met it, it is as good a certificate as any, and for a contact with the face the only one needed.
+fn face_plane(asked: &Asked, ball: &MovingBall, f: f64) -> Option<(f64, Vector3<f64>)> {
+    let n = asked.normal()?;
+    let from_corner = ball.path.displacement(f) - asked.corners()[0].coords;
+    let n = if n.dot(&from_corner) < 0.0 { -n } else { n };
+    Some((-farthest_along(asked.corners(), &n) - ball.radius, n))
 }
 
 /// A support plane of a triangle, from the start of the path.
@@ -140,8 +169,9 @@ struct Support {
 
 impl Support {
     /// The plane that faces the ball at `f`.
-    fn at(ball: &MovingBall, corners: &[Point3<f64>; 3], f: f64) -> Self {
-        let closest = closest_point(corners, &Point3::from(ball.path.displacement(f)));
+    fn at(ball: &MovingBall, asked: &Asked, f: f64) -> Self {
+        let closest = asked.closest(&Point3::from(ball.path.displacement(f)));
+        let corners = asked.corners();
         let (away, distance) = (closest.offset, closest.offset.norm());
         let normal = if distance > 0.0 { away / distance } else { escape_direction(corners, ball.path, f) };
         let gap = -farthest_along(corners, &normal) - ball.radius;
@@ -161,17 +191,19 @@ const MAX_POLISH: u32 = 8;
 /// From `f`, where the ball touches to within the bound, to where it touches: support planes again, now where they are. The triangle
 /// is behind them all the same, so this ends at the contact to the rounding of the planes: on a face at once, at an edge or a vertex in
 /// a step or two of Newton's method.
-fn polish(ball: &MovingBall, corners: &[Point3<f64>; 3], f: f64, to: f64, rounds: &mut u64) -> f64 {
-    let mut f = f;
+fn polish(ball: &MovingBall, asked: &Asked, support: Support, f: f64, to: f64, rounds: &mut u64) -> f64 {
+    let (mut f, mut support) = (f, support);
     for _ in 0..MAX_POLISH {
-        let Support { normal, gap, feature } = Support::at(ball, corners, f);
-        *rounds += 1;
-        let Entry::At { f: next, .. } = ball.path.clearance(gap, &normal).first_entry(f, to) else { break };
-        let arrived = next - f <= 2.0 * UNIT_ROUNDOFF * f || feature == Feature::Face;
+        let Entry::At { f: next, .. } = ball.path.clearance(support.gap, &support.normal).first_entry(f, to) else {
+            break;
+        };
+        let arrived = next - f <= 2.0 * UNIT_ROUNDOFF * f || support.feature == Feature::Face;
         f = next;
         if arrived {
             break;
         }
+        *rounds += 1;
+        support = Support::at(ball, asked, f);
     }
     f
 }

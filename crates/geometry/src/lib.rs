@@ -50,4 +50,5 @@ pub mod mesh;
 pub mod doctor;
 pub mod site;
 pub mod contact;
+mod screen;
 pub mod sweep;

@@ -207,6 +207,15 @@ impl Mesh {
         }
     }
 
+    /// [`normal`](Self::normal) without its promise of unit length.
+    #[inline]
+    pub(crate) fn plain_normal(&self, face: u32) -> Option<&Vector3<f64>> {
+        match &self.normals {
+            Normals::Shared(n) => Some(n),
+            Normals::Each(all) => Some(&all[face as usize]).filter(|n| **n != Vector3::zeros()),
+        }
+    }
+
     /// The least box around all faces.
     pub fn bounds(&self) -> &Aabb {
         self.bvh.bounds()

@@ -40,17 +40,25 @@ impl Path {
     }
 
     /// p(0).
+    #[inline]
     pub fn start(&self) -> Point3<f64> {
         self.start
     }
 
     /// The Taylor terms at the start, as many as the degree.
+    #[inline]
     pub fn terms(&self) -> &[Vector3<f64>] {
         &self.terms[..self.degree]
     }
 
     /// p(f) - p(0). Small displacements are accurate wherever the path is: they know nothing of the start.
+    #[inline]
     pub fn displacement(&self, f: f64) -> Vector3<f64> {
+        if self.degree <= 2 {
+            // What most paths are: the same sum, without a loop.
+            let [linear, quadratic, ..] = self.terms;
+            return (quadratic * f + linear) * f;
+        }
         self.terms().iter().rev().fold(Vector3::zeros(), |sum, term| (sum + term) * f)
     }
 
@@ -69,6 +77,7 @@ impl Path {
     }
 
     /// The distance along `normal` that is left at f when it is `gap` at f = 0: one dot product for each term.
+    #[inline]
     pub fn clearance(&self, gap: f64, normal: &Vector3<f64>) -> Clearance {
         let mut c = [gap, 0.0, 0.0, 0.0, 0.0];
         for (k, term) in self.terms().iter().enumerate() {

@@ -168,6 +168,12 @@ pub fn contact_doubt(extent: f64) -> f64 {
     5.0 * contact_bound(extent)
 }
 
+/// The distance between ball and triangle that is no contact, not even in doubt, as computed from planes with their normals scaled or
+/// not: [`contact_doubt`], and as much again as [`contact_bound`] allows the evaluation, threefold.
+pub(crate) fn screen_bound(extent: f64) -> f64 {
+    contact_doubt(extent) + 3.0 * contact_bound(extent)
+}
+
 /// How far a point at `distance` from a plane's own may seem to stand out of the plane, as computed from its unit normal.
 ///
 /// The normal is off by [`NORMAL_BOUND`] in each component, which lifts the point by sqrt(3) times that; the rest is
