@@ -14,6 +14,7 @@ use carom_geometry::rounding::contact_doubt;
 use carom_geometry::site::{Bend, RegionBound, Site};
 use carom_geometry::sweep::Work;
 use nalgebra::{Point3, Vector3};
+use smallvec::SmallVec;
 
 /// The earliest collision of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -115,10 +116,22 @@ impl<'a> Obstacles<'a> {
     /// When the path of `step` returns to each of `contacts`; never to a lasting one, along which it moves.
     pub fn returns(&self, step: &Step, contacts: &[Contact], counters: &mut Counters) -> Returns {
         let slack = touch_distance(step.path.start().coords.amax().max(self.radius), 0.0);
+        // What is behind the plane is met after it, and what is as near to it as the position is known not before.
+        let behind = |entry: &Entry| match *entry {
+            Entry::Never => f64::INFINITY,
+            Entry::At { f, rate } if rate < 0.0 => f + (slack / -rate).min(f),
+            Entry::At { f, .. } => f,
+        };
         contacts
             .iter()
             .map(|contact| {
-                let hold = |until| Hold { normal: contact.normal, point: self.anchor(contact), slack, until };
+                let hold = |until| Hold {
+                    normal: contact.normal,
+                    point: self.anchor(contact),
+                    slack,
+                    until,
+                    face: contact.site.map(|site| site.face()),
+                };
                 if contact.lasting {
                     let until = f64::INFINITY;
                     return Return { hold: hold(until), entry: Entry::Never, free: self.free(contact, until) };
@@ -128,7 +141,7 @@ impl<'a> Obstacles<'a> {
                 let until = entry.f().unwrap_or(f64::INFINITY);
                 let curved = self.bend(contact) != Bend::Flat && contact.rate >= 0.0;
                 let free = if curved { self.leaves_until(step, contact, counters).max(until) } else { until };
-                Return { hold: hold(until), entry, free: self.free(contact, free) }
+                Return { hold: hold(behind(&entry)), entry, free: self.free(contact, free) }
             })
             .collect()
     }
@@ -214,9 +227,11 @@ impl<'a> Obstacles<'a> {
                 earliest = Some(Hit { f, surface: *surface, face: None, rate: Some(rate) });
             }
         }
-        let holds: ArrayVec<Hold, MAX_CONTACTS> = returns.iter().map(|r| r.hold).collect();
-        let ball = MovingBall { path: &step.path, radius: self.mesh_radius, holds: &holds };
         for (surface, mesh) in &self.plan.meshes {
+            let here = |r: &Return| r.hold.face.filter(|_| r.free.is_some_and(|(s, ..)| s == *surface));
+            let holds: ArrayVec<Hold, MAX_CONTACTS> =
+                returns.iter().map(|r| Hold { face: here(r), ..r.hold }).collect();
+            let ball = MovingBall { path: &step.path, radius: self.mesh_radius, holds: &holds };
             let to = earliest.map_or(step.to, |hit| hit.f);
             let mut work = Work::default();
             let free_until = |face: u32| {
@@ -259,7 +274,7 @@ impl<'a> Obstacles<'a> {
             rate: normal.dot(velocity),
             lasting: false,
         };
-        let mut all: Vec<Contact> = Vec::new();
+        let mut all: SmallVec<[Contact; MAX_CONTACTS]> = SmallVec::new();
         for ((surface, plane), side) in self.plan.planes.iter().zip(&self.sides) {
             if plane.clearance(position, self.radius, *side) <= tolerance {
                 all.push(contact(*surface, None, plane.normal().into_inner() * side.sign()));

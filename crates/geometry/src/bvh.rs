@@ -32,6 +32,26 @@ struct Node {
     child: [Child; WIDTH],
 }
 
+impl Node {
+    /// A bit for each child whose box meets the one from `lo` to `hi`.
+    #[inline]
+    fn meets(&self, lo: &[f32; 3], hi: &[f32; 3]) -> u32 {
+        let mut meets = [true; WIDTH];
+        for i in 0..3 {
+            for (meets, (least, largest)) in meets.iter_mut().zip(self.planes[i].iter().zip(&self.planes[i + 3])) {
+                *meets &= (*least <= hi[i]) & (*largest >= lo[i]);
+            }
+        }
+        mask(&meets)
+    }
+}
+
+/// A bit for each that is true.
+#[inline]
+fn mask(flags: &[bool; WIDTH]) -> u32 {
+    flags.iter().enumerate().fold(0, |mask, (j, &flag)| mask | u32::from(flag) << j)
+}
+
 /// A child of a node: the index of a node, or `LEAF`, how many items less one, and the first of them.
 #[derive(Debug, Clone, Copy, Default)]
 struct Child(u32);
@@ -142,11 +162,12 @@ impl Bvh {
                 }
                 let Some(node) = self.nodes.get(child.0 as usize) else { continue };
                 visited += 1;
-                for (j, &child) in node.child.iter().enumerate() {
-                    if (0..3).all(|i| node.planes[i][j] <= hi[i] && node.planes[i + 3][j] >= lo[i]) {
-                        stack[pending] = Pending { child, entry: 0.0 };
-                        pending += 1;
-                    }
+                let mut met = node.meets(&lo, &hi);
+                while met != 0 {
+                    let j = met.trailing_zeros() as usize;
+                    met &= met - 1;
+                    stack[pending] = Pending { child: node.child[j], entry: 0.0 };
+                    pending += 1;
                 }
             }
             visited

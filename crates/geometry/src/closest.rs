@@ -1,5 +1,6 @@
 //! The point of a triangle closest to a given one, for triangles of any shape and size.
 
+use crate::bounds::amax;
 use crate::normal::cross_compensated;
 use crate::rounding::{NEEDLE_SINE_SQUARED, exponent, scale};
 use nalgebra::{Point3, Vector3};
@@ -84,19 +85,14 @@ impl Asked {
     }
 }
 
-/// The largest |component|.
-fn amax(v: &Vector3<f64>) -> f64 {
-    v.x.abs().max(v.y.abs()).max(v.z.abs())
-}
-
 /// The triangle and the point scaled by 2^-k to a size of about 1; none if there is no need.
 pub(crate) fn to_unit_scale(
     triangle: &[Point3<f64>; 3],
     x: &Point3<f64>,
 ) -> Option<([Point3<f64>; 3], Point3<f64>, i32)> {
     let origin = triangle[0];
-    let edges = (triangle[1] - origin).amax().max((triangle[2] - origin).amax());
-    let most = edges.max((x - origin).amax());
+    let edges = amax(&(triangle[1] - origin)).max(amax(&(triangle[2] - origin)));
+    let most = edges.max(amax(&(x - origin)));
     if DIRECT_RANGE.contains(&exponent(most)) && (DIRECT_RANGE.contains(&exponent(edges)) || edges == 0.0)
         || most == 0.0
     {

@@ -6,6 +6,7 @@
 //! was, so the answer is never late; doubt within the rounding bound is a hit. (Conservative advancement: Mirtich 1996; the
 //! support plane makes it exact for a face and quadratically convergent for edges and vertices.)
 
+use crate::bounds::{amax, largest};
 use crate::clearance::Entry;
 use crate::closest::{Asked, Feature};
 use crate::path::Path;
@@ -26,14 +27,17 @@ pub struct Hold {
     pub slack: f64,
     /// The f at which the path returns to the plane, infinite if never.
     pub until: f64,
+    /// A face of a mesh to which it returns, if it goes nowhere in between: the first to be asked. It changes no answer.
+    pub face: Option<u32>,
 }
 
 impl Hold {
     /// Whether the triangle is behind the plane, as far as that can be told.
+    #[inline]
     fn hides(&self, triangle: &[Point3<f64>; 3]) -> bool {
         triangle.iter().all(|v| {
             let d = v - self.point;
-            self.normal.dot(&d) <= self.slack + hold_bound(d.amax())
+            self.normal.dot(&d) <= self.slack + hold_bound(amax(&d))
         })
     }
 }
@@ -47,6 +51,35 @@ pub struct MovingBall<'a> {
     pub radius: f64,
     /// Planes that it touches at the start.
     pub holds: &'a [Hold],
+}
+
+impl MovingBall<'_> {
+    /// The triangle relative to the start of the path: what is far from the origin costs no digits.
+    #[inline]
+    pub(crate) fn asked(&self, triangle: &[Point3<f64>; 3]) -> Asked {
+        let start = self.path.start();
+        Asked::new(&triangle.map(|v| Point3::from(v - start)))
+    }
+
+    /// Whether the plane that faces the ball at `to` is enough to certify that it stays farther than `reach` off a triangle in
+    /// [`from`, `to`]: so it is for most triangles around one that is hit at `to`.
+    pub(crate) fn stays_off(&self, asked: &Asked, from: f64, to: f64, reach: f64) -> bool {
+        let Support { normal, gap, .. } = Support::at(self, asked, to);
+        let clearance = self.path.clearance(gap + self.radius - reach, &normal);
+        clearance.at(from) > 0.0 && clearance.at(to) > 0.0 && clearance.first_entry(from, to) == Entry::Never
+    }
+
+    /// The f, at least `from`, before which the holds keep the ball off `triangle`.
+    #[inline]
+    pub(crate) fn held_off(&self, triangle: &[Point3<f64>; 3], from: f64) -> f64 {
+        let mut f = from;
+        for hold in self.holds {
+            if hold.until > f && hold.hides(triangle) {
+                f = hold.until;
+            }
+        }
+        f
+    }
 }
 
 /// How the search for a contact ended.
@@ -69,34 +102,19 @@ const MAX_ROUNDS: u32 = 256;
 
 /// The first f in [`from`, `to`] at which the ball touches `triangle` and closes in; `rounds` counts support planes.
 pub fn first_contact(ball: &MovingBall, triangle: &[Point3<f64>; 3], from: f64, to: f64, rounds: &mut u64) -> Contact {
-    match contact_from(ball, triangle, from, to, rounds) {
+    match contact_from(ball, &ball.asked(triangle), ball.held_off(triangle, from), to, rounds) {
         Contact::At { f, feature } => Contact::At { f: f.min(to), feature },
         Contact::Miss => Contact::Miss,
     }
 }
 
-/// [`first_contact`], but what is found has the same bits for every `to` <= 1, so that it may lie beyond `to` by rounding.
-pub(crate) fn contact_from(
-    ball: &MovingBall,
-    triangle: &[Point3<f64>; 3],
-    from: f64,
-    to: f64,
-    rounds: &mut u64,
-) -> Contact {
-    let path = ball.path;
-    let mut f = from;
-    for hold in ball.holds {
-        if hold.until > f && hold.hides(triangle) {
-            f = hold.until;
-        }
-    }
-    if f > to {
+/// [`first_contact`], but `from` is where the holds let go, and what is found has the same bits for every `to` <= 1, so that it may lie beyond `to` by rounding.
+pub(crate) fn contact_from(ball: &MovingBall, asked: &Asked, from: f64, to: f64, rounds: &mut u64) -> Contact {
+    if from > to {
         return Contact::Miss;
     }
-    // Everything relative to the start: what is far from the origin costs no digits.
-    let start = path.start();
-    let asked = Asked::new(&triangle.map(|v| Point3::from(v - start)));
-    let size = asked.corners().iter().map(|a| a.coords.amax()).fold(ball.radius, f64::max);
+    let (path, mut f) = (ball.path, from);
+    let size = asked.corners().iter().map(|a| amax(&a.coords)).fold(ball.radius, largest);
     let bound_at = |f: f64| contact_bound(size + path.reach(f));
     // Planes are met on the whole path: a contact at `to` is decided as one before it.
     let end = to.max(1.0);
@@ -114,7 +132,7 @@ pub(crate) fn contact_from(
     };
 
     if let Some((gap, normal)) =
-        face_plane(&asked, ball, f).filter(|(gap, n)| path.clearance(*gap, n).at(f) > 2.0 * bound_at(f))
+        face_plane(asked, ball, f).filter(|(gap, n)| path.clearance(*gap, n).at(f) > 2.0 * bound_at(f))
     {
         *rounds += 1;
         match meets(gap, &normal, f).0 {
@@ -127,25 +145,25 @@ pub(crate) fn contact_from(
             return Contact::Miss;
         }
         *rounds += 1;
-        let support = Support::at(ball, &asked, f);
+        let support = Support::at(ball, asked, f);
         let plane = path.clearance(support.gap, &support.normal);
         let (height, falling) = (plane.at(f), plane.rate(f) < 0.0);
         if height <= 2.0 * bound_at(f) && falling {
-            return Contact::At { feature: support.feature, f: polish(ball, &asked, support, f, end, rounds) };
+            return Contact::At { feature: support.feature, f: polish(ball, asked, support, f, end, rounds) };
         }
         let (entry, bound) = meets(support.gap, &support.normal, f);
         let Entry::At { f: next, .. } = entry else {
             return Contact::Miss;
         };
         if (height <= 2.0 * bound && falling) || next - f <= 2.0 * UNIT_ROUNDOFF * f {
-            return Contact::At { feature: support.feature, f: polish(ball, &asked, support, f, end, rounds) };
+            return Contact::At { feature: support.feature, f: polish(ball, asked, support, f, end, rounds) };
         }
         f = next;
     }
     if f > to {
         return Contact::Miss;
     }
-    Contact::At { f, feature: Support::at(ball, &asked, f).feature }
+    Contact::At { f, feature: Support::at(ball, asked, f).feature }
 }
 
 /// The distance between the ball at the start and the plane of the triangle, seen from the side the ball is on at `f`, and the normal
@@ -182,7 +200,7 @@ impl Support {
 /// How far the triangle reaches along `normal`, from the start of the path.
 fn farthest_along(corners: &[Point3<f64>; 3], normal: &Vector3<f64>) -> f64 {
     let [a, b, c] = corners.map(|p| normal.dot(&p.coords));
-    a.max(b).max(c)
+    largest(largest(a, b), c)
 }
 
 /// Support planes looked at to polish a contact: from within its bound, a graze comes nearer by a factor of 4 with each.
