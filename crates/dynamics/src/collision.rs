@@ -116,12 +116,6 @@ impl<'a> Obstacles<'a> {
     /// When the path of `step` returns to each of `contacts`; never to a lasting one, along which it moves.
     pub fn returns(&self, step: &Step, contacts: &[Contact], counters: &mut Counters) -> Returns {
         let slack = touch_distance(step.path.start().coords.amax().max(self.radius), 0.0);
-        // What is behind the plane is met after it, and what is as near to it as the position is known not before.
-        let behind = |entry: &Entry| match *entry {
-            Entry::Never => f64::INFINITY,
-            Entry::At { f, rate } if rate < 0.0 => f + (slack / -rate).min(f),
-            Entry::At { f, .. } => f,
-        };
         contacts
             .iter()
             .map(|contact| {
@@ -141,7 +135,7 @@ impl<'a> Obstacles<'a> {
                 let until = entry.f().unwrap_or(f64::INFINITY);
                 let curved = self.bend(contact) != Bend::Flat && contact.rate >= 0.0;
                 let free = if curved { self.leaves_until(step, contact, counters).max(until) } else { until };
-                Return { hold: hold(behind(&entry)), entry, free: self.free(contact, free) }
+                Return { hold: hold(until), entry, free: self.free(contact, free) }
             })
             .collect()
     }

@@ -2,7 +2,7 @@
 
 use crate::bounds::amax;
 use crate::normal::cross_compensated;
-use crate::rounding::{NEEDLE_SINE_SQUARED, exponent, scale};
+use crate::rounding::{LEAST_SINE_SQUARED, NEEDLE_SINE_SQUARED, exponent, scale};
 use nalgebra::{Point3, Vector3};
 
 /// Which part of a triangle.
@@ -54,23 +54,28 @@ const DIRECT_RANGE: std::ops::Range<i32> = -200..250;
 /// A triangle that is asked for more than one closest point: what depends on it alone is computed once.
 pub(crate) struct Asked {
     triangle: [Point3<f64>; 3],
+    /// Of the triangle, or of one of size 1 if that is not in [`DIRECT_RANGE`].
     frame: Frame,
-    /// Its size, if that is in [`DIRECT_RANGE`].
-    size: Option<f64>,
+    size: f64,
+    in_range: bool,
 }
 
 impl Asked {
     pub(crate) fn new(triangle: &[Point3<f64>; 3]) -> Self {
         let [a, b, c] = triangle;
         let size = amax(&(b - a)).max(amax(&(c - a)));
-        let in_range = DIRECT_RANGE.contains(&exponent(size));
-        Self { triangle: *triangle, frame: Frame::new(triangle), size: in_range.then_some(size) }
+        let k = exponent(size);
+        if DIRECT_RANGE.contains(&k) || size == 0.0 {
+            return Self { triangle: *triangle, frame: Frame::new(triangle), size, in_range: size > 0.0 };
+        }
+        let frame = Frame::new(&triangle.map(|p| p.map(|c| scale(c, -k))));
+        Self { triangle: *triangle, frame, size: scale(size, -k), in_range: false }
     }
 
     /// What [`closest_point`] says, bit for bit.
     pub(crate) fn closest(&self, x: &Point3<f64>) -> Closest {
-        let direct = |size: f64| exponent(size.max(amax(&(x - self.triangle[0])))) < DIRECT_RANGE.end;
-        if self.size.is_some_and(direct) { self.frame.closest(x) } else { closest_point(&self.triangle, x) }
+        let direct = || exponent(self.size.max(amax(&(x - self.triangle[0])))) < DIRECT_RANGE.end;
+        if self.in_range && direct() { self.frame.closest(x) } else { closest_point(&self.triangle, x) }
     }
 
     /// The triangle.
@@ -78,10 +83,10 @@ impl Asked {
         &self.triangle
     }
 
-    /// The unit normal, to a few roundings and on either side; none without an area, or of a size that has no squares.
+    /// The unit normal, to a few roundings and on either side; none without an area that f64 can tell.
     pub(crate) fn normal(&self) -> Option<Vector3<f64>> {
-        let square = self.frame.normal.norm_squared();
-        (self.size.is_some() && square.is_normal()).then(|| self.frame.normal / square.sqrt())
+        let (square, side) = (self.frame.normal.norm_squared(), self.size * self.size);
+        (square > side * LEAST_SINE_SQUARED * side).then(|| self.frame.normal / square.sqrt())
     }
 }
 
