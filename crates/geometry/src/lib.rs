@@ -52,3 +52,4 @@ pub mod site;
 pub mod contact;
 mod screen;
 pub mod sweep;
+pub mod pierce;
