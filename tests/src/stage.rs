@@ -1,10 +1,13 @@
 //! Small scenes in a few words, and what came of them.
 
 use carom_dynamics::body::Ball;
+use carom_dynamics::effects::buoyancy::Buoyancy;
 use carom_dynamics::effects::drag::Drag;
 use carom_dynamics::effects::friction::Friction;
 use carom_dynamics::effects::gravity::Gravity;
+use carom_dynamics::effects::magnus::Magnus;
 use carom_dynamics::effects::restitution::Restitution;
+use carom_dynamics::effects::spin_decay::SpinDecay;
 use carom_dynamics::events::{Event, EventKind, Outcome};
 use carom_dynamics::observer::Trajectory;
 use carom_dynamics::plan::Plan;
@@ -40,8 +43,7 @@ pub fn coulomb(mu: f64) -> Friction {
 impl Stage {
     /// Empty space for `duration` seconds.
     pub fn new(duration: f64) -> Self {
-        let (surfaces, balls) = (Vec::new(), Vec::new());
-        Self(Scene { duration, gravity: None, drag: None, surfaces, balls, rest: None, method: None })
+        Self(Scene::lasting(duration))
     }
 
     /// With gravity, in m/s^2.
@@ -58,6 +60,31 @@ impl Stage {
     /// With air resistance.
     pub fn drag(mut self, drag: Drag) -> Self {
         self.0.drag = Some(drag);
+        self
+    }
+
+    /// With the Magnus force.
+    pub fn magnus(mut self, magnus: Magnus) -> Self {
+        self.0.magnus = Some(magnus);
+        self
+    }
+
+    /// With spin that decays with the time constant `tau`, in s.
+    pub fn spin_decay(mut self, tau: f64) -> Self {
+        self.0.spin_decay = Some(SpinDecay::new(tau).unwrap_or_else(|e| panic!("{e}")));
+        self
+    }
+
+    /// With buoyancy in a fluid of `density`, in kg/m^3.
+    pub fn buoyancy(mut self, density: f64) -> Self {
+        self.0.buoyancy = Some(Buoyancy::new(density).unwrap_or_else(|e| panic!("{e}")));
+        self
+    }
+
+    /// With the last ball spinning at the angular velocity `spin`, in rad/s.
+    pub fn spinning(mut self, spin: impl Into<Vector3<f64>>) -> Self {
+        let ball = self.0.balls.pop().unwrap_or_else(|| panic!("no ball to spin"));
+        self.0.balls.push(ball.spinning(spin.into()).unwrap_or_else(|e| panic!("{e}")));
         self
     }
 

@@ -50,14 +50,14 @@ fn r02_detection_determination_and_response_one_after_the_other() {
     let (plan, mut counters) = (stage.plan(), Counters::default());
     let start = plan.balls()[0].start();
     let Shape::Plane(floor) = stage.0.surfaces[0].shape.clone() else { panic!("a plane") };
-    let step = euler::explicit(&start, plan.constant_acceleration(), 0.5);
+    let step = euler::explicit(&start, plan.constant_acceleration(&plan.balls()[0]), 0.5);
 
     // Detection: the clearance changes its sign.
     let [before, after] = [start, step.end()].map(|s| floor.clearance(&s.position, 0.25, Side::Positive));
     assert_eq!((before, after), (1.0, -0.5));
 
     // Determination: when, and where.
-    let obstacles = Obstacles::new(&plan, 0.25, &start, &plan.constant_acceleration());
+    let obstacles = Obstacles::new(&plan, 0.25, &start, &plan.constant_acceleration(&plan.balls()[0]));
     let none = Contacts::new();
     let returns = obstacles.returns(&step, &none, &mut counters);
     let hit = obstacles.earliest(&step, &none, &returns, &mut counters).unwrap();

@@ -7,13 +7,22 @@ mod cli;
 mod commands;
 mod error;
 mod mesh_file;
+mod model;
 mod output;
+pub mod plot;
+mod replay;
 mod scene;
+mod stage;
 mod summary;
 mod terminal;
+mod view;
 
+use carom_dynamics::scene::Scene;
+use carom_geometry::mesh::Mesh;
 use clap::Parser;
 use cli::{Cli, Command};
+use mesh_file::RawMesh;
+use std::path::Path;
 use std::process::ExitCode;
 
 /// Runs the program with the arguments of the process, and says how it ended: `carom --help` lists the exit codes.
@@ -21,6 +30,8 @@ pub fn main() -> ExitCode {
     let cli = Cli::parse();
     let result = match &cli.command {
         Command::Run(args) => commands::run::run(args),
+        Command::View(args) => commands::view::view(args),
+        Command::Export(args) => commands::export::export(args),
         Command::Check(args) => commands::check::check(args),
         Command::Schema => commands::schema::schema(),
         Command::Materials(args) => commands::materials::materials(args),
@@ -33,4 +44,19 @@ pub fn main() -> ExitCode {
             error.exit_code()
         }
     }
+}
+
+/// The scene in the file at `path`, TOML or JSON by its extension, with the meshes it names read; in SI units.
+///
+/// Fails with all that is wrong with the file, in the words that `carom check` shows.
+pub fn read_scene(path: &Path) -> Result<Scene, String> {
+    scene::load(path, None).map(|loaded| loaded.scene).map_err(|error| error.render(false))
+}
+
+/// The mesh in the file at `path`: OBJ, STL or PLY by its extension, in the unit of the file.
+///
+/// Fails with what is wrong, and in which line.
+pub fn read_mesh(path: &Path) -> Result<Mesh, String> {
+    let RawMesh { vertices, faces } = mesh_file::read(path).map_err(|error| error.to_string())?;
+    Mesh::new(vertices, faces).map_err(|error| format!("{}: {error}", path.display()))
 }

@@ -12,12 +12,17 @@ pub struct State {
     pub velocity: Vector3<f64>,
 }
 
-/// A ball that does not rotate: where it starts, how fast, how large, how heavy.
+/// The moment of inertia of a solid sphere about its centre, in units of m r^2.
+pub const SOLID_SPHERE: f64 = 0.4;
+
+/// A ball: where it starts, how fast, how large, how heavy; and what only some effects ask for, its spin and how its mass lies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ball {
     start: State,
     radius: f64,
     mass: Option<f64>,
+    spin: Vector3<f64>,
+    inertia: f64,
 }
 
 impl Ball {
@@ -35,7 +40,20 @@ impl Ball {
         if let Some(mass) = mass {
             require("mass", mass, "finite and > 0, in kg", mass.is_finite() && mass > 0.0)?;
         }
-        Ok(Self { start: State { position, velocity }, radius, mass })
+        let (spin, inertia) = (Vector3::zeros(), SOLID_SPHERE);
+        Ok(Self { start: State { position, velocity }, radius, mass, spin, inertia })
+    }
+
+    /// The same with the angular velocity `spin` in rad/s, right-handed.
+    pub fn spinning(self, spin: Vector3<f64>) -> Result<Self, ValueError> {
+        require_finite("spin", &spin)?;
+        Ok(Self { spin, ..self })
+    }
+
+    /// The same with the moment of inertia `alpha` m r^2: [`SOLID_SPHERE`] if not given, 2/3 for a thin shell.
+    pub fn with_inertia(self, alpha: f64) -> Result<Self, ValueError> {
+        let inertia = require("inertia", alpha, "above 0, and 1 at most", alpha > 0.0 && alpha <= 1.0)?;
+        Ok(Self { inertia, ..self })
     }
 
     /// Where the ball starts, and how fast.
@@ -51,5 +69,38 @@ impl Ball {
     /// Mass in kg, if one was given.
     pub fn mass(&self) -> Option<f64> {
         self.mass
+    }
+
+    /// The angular velocity at the start, in rad/s.
+    pub fn spin(&self) -> Vector3<f64> {
+        self.spin
+    }
+
+    /// The moment of inertia in units of m r^2.
+    pub fn inertia(&self) -> f64 {
+        self.inertia
+    }
+
+    /// Its volume in m^3.
+    pub fn volume(&self) -> f64 {
+        4.0 / 3.0 * std::f64::consts::PI * self.radius * self.radius * self.radius
+    }
+}
+
+/// A ball as the effects on its flight see it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Body {
+    /// Radius in m.
+    pub radius: f64,
+    /// What a force is divided by to be an acceleration, in kg: the mass, and what it takes along of the air.
+    pub inertia: f64,
+    /// Angular velocity in rad/s.
+    pub spin: Vector3<f64>,
+}
+
+impl Body {
+    /// The cross section, pi r^2, in m^2.
+    pub fn area(&self) -> f64 {
+        std::f64::consts::PI * self.radius * self.radius
     }
 }

@@ -20,6 +20,8 @@ pub struct Counters {
     pub accelerations: u64,
     /// Evaluations of drag.
     pub drag: u64,
+    /// Evaluations of the Magnus force.
+    pub magnus: u64,
     /// Evaluations of restitution.
     pub restitution: u64,
     /// Evaluations of friction.
@@ -52,6 +54,7 @@ impl std::ops::AddAssign for Counters {
         self.rounds += o.rounds;
         self.accelerations += o.accelerations;
         self.drag += o.drag;
+        self.magnus += o.magnus;
         self.restitution += o.restitution;
         self.friction += o.friction;
         self.rest += o.rest;
@@ -63,7 +66,7 @@ impl std::ops::AddAssign for Counters {
 
 impl Counters {
     /// Every count with its name.
-    pub fn named(&self) -> [(&'static str, u64); 13] {
+    pub fn named(&self) -> [(&'static str, u64); 14] {
         // Taken apart, so that a new count cannot be forgotten here.
         let Self {
             paths,
@@ -73,6 +76,7 @@ impl Counters {
             rounds,
             accelerations,
             drag,
+            magnus,
             restitution,
             friction,
             rest,
@@ -88,6 +92,7 @@ impl Counters {
             ("rounds", rounds),
             ("accelerations", accelerations),
             ("drag", drag),
+            ("magnus", magnus),
             ("restitution", restitution),
             ("friction", friction),
             ("rest", rest),

@@ -36,6 +36,7 @@
 // In dependency order: a module imports only from those above it.
 pub mod error;
 pub mod tolerance;
+pub mod power;
 pub mod counters;
 pub mod body;
 pub mod effects;

@@ -1,7 +1,10 @@
 //! What will be evaluated: decided once, before the loop, from the scene.
 
-use crate::body::{Ball, State};
+use crate::body::{Ball, Body, State};
 use crate::effects::Flow;
+use crate::effects::buoyancy::Buoyancy;
+use crate::effects::gravity::Gravity;
+use crate::effects::spin_decay::SpinDecay;
 use crate::error::{SceneError, ValueError, require};
 use crate::forces::Forces;
 use crate::integrators::adaptive::Adaptive;
@@ -23,8 +26,12 @@ use std::sync::Arc;
 #[derive(Debug, Clone)]
 pub struct Plan {
     pub(crate) duration: f64,
-    pub(crate) constant: Vector3<f64>,
-    pub(crate) flows: Vec<Arc<dyn Flow>>,
+    gravity: Option<Gravity>,
+    buoyancy: Option<Buoyancy>,
+    /// What acts on every ball, and what acts on those that spin as well.
+    flows: Vec<Arc<dyn Flow>>,
+    spinning_flows: Vec<Arc<dyn Flow>>,
+    spin_decay: Option<SpinDecay>,
     pub(crate) planes: Vec<(usize, Plane)>,
     pub(crate) meshes: Vec<(usize, Arc<Mesh>)>,
     pub(crate) surfaces: Vec<PlannedSurface>,
@@ -56,14 +63,23 @@ impl Plan {
         if scene.balls.is_empty() {
             return Err(SceneError::NoBalls);
         }
+        let spins = scene.balls.iter().any(|ball| ball.spin() != Vector3::zeros());
         let mut flows: Vec<Arc<dyn Flow>> = Vec::new();
-        if let Some(drag) = scene.drag {
-            if let Some(ball) = scene.balls.iter().position(|b| b.mass().is_none()) {
-                return Err(SceneError::MassMissing { ball, effect: "drag" });
-            }
+        if let Some(drag) = scene.drag.filter(|drag| !drag.is_none()) {
             flows.push(Arc::new(drag));
         }
-        let method = method(scene, &flows)?;
+        let mut spinning_flows = flows.clone();
+        if let Some(magnus) = scene.magnus.filter(|magnus| !magnus.is_none() && spins) {
+            spinning_flows.push(Arc::new(magnus));
+        }
+        let buoyancy = scene.buoyancy.filter(|buoyancy| !buoyancy.is_none());
+        let needs_mass = scene.drag.map(|_| "drag").or(scene.magnus.map(|_| "the Magnus force"));
+        if let Some(effect) = needs_mass.or(scene.buoyancy.map(|_| "buoyancy"))
+            && let Some(ball) = scene.balls.iter().position(|b| b.mass().is_none())
+        {
+            return Err(SceneError::MassMissing { ball, effect });
+        }
+        let method = method(scene, &spinning_flows)?;
         let (planes, meshes) = shapes(scene);
         let size = Size::of(scene, &planes, &meshes);
         check_range(scene, &size, !meshes.is_empty())?;
@@ -85,8 +101,11 @@ impl Plan {
         });
         Ok(Self {
             duration,
-            constant: scene.gravity.map_or(Vector3::zeros(), |g| g.acceleration()),
+            gravity: scene.gravity,
+            buoyancy,
             flows,
+            spinning_flows,
+            spin_decay: scene.spin_decay.filter(|_| spins),
             planes,
             meshes,
             surfaces: surfaces.collect(),
@@ -118,9 +137,13 @@ impl Plan {
         self.rest
     }
 
-    /// The constant part of the acceleration, in m/s^2.
-    pub fn constant_acceleration(&self) -> Vector3<f64> {
-        self.constant
+    /// The constant part of the acceleration of `ball`, in m/s^2.
+    pub fn constant_acceleration(&self, ball: &Ball) -> Vector3<f64> {
+        let g = self.gravity.map_or(Vector3::zeros(), |g| g.acceleration());
+        match (self.buoyancy, ball.mass()) {
+            (Some(buoyancy), Some(mass)) => buoyancy.weight(&g, ball, mass),
+            _ => g,
+        }
     }
 
     /// The box of all bounded surfaces; none if there are none, or if an infinite plane is among them.
@@ -132,7 +155,17 @@ impl Plan {
     }
 
     pub(crate) fn forces<'a>(&'a self, ball: &'a Ball) -> Forces<'a> {
-        Forces { constant: self.constant, flows: &self.flows, ball }
+        // Without a mass nothing asks for it: the plan has seen to that.
+        let mass = ball.mass().unwrap_or(f64::INFINITY);
+        let inertia = self.buoyancy.map_or(mass, |buoyancy| buoyancy.inertia(ball, mass));
+        let spins = ball.spin() != Vector3::zeros();
+        Forces {
+            constant: self.constant_acceleration(ball),
+            flows: if spins { &self.spinning_flows } else { &self.flows },
+            ball,
+            body: Body { radius: ball.radius(), inertia, spin: ball.spin() },
+            decay: self.spin_decay.filter(|_| spins),
+        }
     }
 
     pub(crate) fn integrator(&self) -> Integrator {

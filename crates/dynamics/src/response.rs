@@ -40,7 +40,7 @@ fn respond_to_one(
 ) -> Option<Vector3<f64>> {
     let hit = contacts.iter().position(|c| c.rate < 0.0)?;
     let (n, closing) = (contacts[hit].normal, -contacts[hit].rate);
-    let c_r = materials[hit].restitution.coefficient();
+    let c_r = materials[hit].restitution.at(closing);
     // A rounded unit normal is off by the same u at each of a million bounces: divided by its square, it is not.
     let square = n.norm_squared();
     let v_t = v - n * (n.dot(&v) / square);
@@ -86,7 +86,7 @@ fn respond_to_all(
         let bounces = repeat < MAX_REPEATS;
         let mut after = projection.velocity;
         for (i, impulse) in projection.loads() {
-            let c_r = materials[i].restitution.coefficient();
+            let c_r = materials[i].restitution.at(impulse);
             after = slowed(&materials[i].friction, after, impulse, c_r, counters);
         }
         if bounces {

@@ -1,8 +1,11 @@
 //! What is wanted: the surfaces, the balls, the effects and the method.
 
 use crate::body::Ball;
+use crate::effects::buoyancy::Buoyancy;
 use crate::effects::drag::Drag;
 use crate::effects::gravity::Gravity;
+use crate::effects::magnus::Magnus;
+use crate::effects::spin_decay::SpinDecay;
 use crate::surface::Surface;
 use crate::tolerance::RestThresholds;
 
@@ -42,6 +45,12 @@ pub struct Scene {
     pub gravity: Option<Gravity>,
     /// Air resistance, if any.
     pub drag: Option<Drag>,
+    /// The Magnus force on balls that spin, if any.
+    pub magnus: Option<Magnus>,
+    /// The decay of spin in the air, if any.
+    pub spin_decay: Option<SpinDecay>,
+    /// Buoyancy with added mass, if any.
+    pub buoyancy: Option<Buoyancy>,
     /// What the balls bounce on. The order does not matter.
     pub surfaces: Vec<Surface>,
     /// The balls; each moves on its own.
@@ -53,8 +62,20 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// An empty scene of `duration` seconds, to fill in: no gravity, no air, no surfaces, no balls.
+    /// An empty scene of `duration` seconds, to fill in: no gravity, no air, no surfaces, no
+    /// balls.
     pub fn lasting(duration: f64) -> Self {
-        Self { duration, gravity: None, drag: None, surfaces: Vec::new(), balls: Vec::new(), rest: None, method: None }
+        Self {
+            duration,
+            gravity: None,
+            drag: None,
+            magnus: None,
+            spin_decay: None,
+            buoyancy: None,
+            surfaces: Vec::new(),
+            balls: Vec::new(),
+            rest: None,
+            method: None,
+        }
     }
 }

@@ -133,6 +133,7 @@ impl<O: Observer> Walk<'_, O> {
             self.observer.segment(&Segment { time, end, step: *step, to, motion });
         }
         self.state = step.at(to);
+        self.forces.pass(step.time(to));
         if end - self.moved > time_resolution(end) {
             self.standstill = 0;
             self.moved = end;

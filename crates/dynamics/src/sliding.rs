@@ -140,8 +140,8 @@ pub fn slide(
         return Slide { step: exact::step(state, a, remaining), stops: false };
     }
     let longest = carriers.iter().map(|c| longest_step(c, state, &balance.free)).fold(remaining, f64::min);
-    let step = integrator.step(state, longest, |s| {
-        let a = forces.acceleration(s, counters);
+    let step = integrator.step(state, longest, |s, after| {
+        let a = forces.acceleration_after(s, after, counters);
         let balance = Balance::of(&a, carriers, s);
         // From a standstill, friction is against where the ball sets out to.
         let direction = s.velocity.try_normalize(0.0).or_else(|| balance.free.try_normalize(0.0));

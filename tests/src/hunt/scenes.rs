@@ -106,8 +106,7 @@ impl Draft {
         let duration = pick(random, &[1.0, 5.0]);
         let bounds = mesh.map(|m| (*m.bounds().min(), *m.bounds().max()));
         let (low, high) = bounds.unwrap_or((Point3::new(-2.0, -2.0, -2.0), Point3::new(2.0, 2.0, 2.0)));
-        let scene =
-            Scene { duration, gravity: None, drag, surfaces: Vec::new(), balls: Vec::new(), rest: None, method };
+        let scene = Scene { drag, method, ..Scene::lasting(duration) };
         let mut draft = Self {
             scene,
             low,

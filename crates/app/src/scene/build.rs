@@ -1,11 +1,14 @@
 //! From the keys of a scene file to a scene, every fault told at its key.
 
-use super::file::{AirTable, BallTable, FrictionTable, Integrator, MaterialTable, MethodTable, RestTable, SceneFile};
+use super::air::Air;
+use super::file::{
+    BallTable, FallingTable, FrictionTable, Integrator, MaterialTable, MethodTable, RestTable, RestitutionTable,
+    SceneFile,
+};
 use super::problem::Problem;
 use super::shapes;
 use super::tree::{Node, Step};
 use carom_dynamics::body::Ball;
-use carom_dynamics::effects::drag::Drag;
 use carom_dynamics::effects::friction::Friction;
 use carom_dynamics::effects::gravity::Gravity;
 use carom_dynamics::effects::restitution::Restitution;
@@ -59,45 +62,15 @@ impl Builder<'_> {
             self.refuse(at!["duration"], Problem::new(message));
         }
         let gravity = file.gravity.and_then(|g| self.accept(at!["gravity"], Gravity::uniform(Vector3::from(g))));
-        let drag = file.air.as_ref().and_then(|air| self.drag(air));
+        let air = file.air.as_ref().map_or_else(Air::default, |air| self.air(air));
         let materials = self.materials(&file.materials);
         let surfaces = shapes::surfaces(self, &file.surfaces, &materials, folder);
         let (balls, tables) = self.balls(&file.balls);
         let rest = file.rest.as_ref().and_then(|rest| self.rest(rest));
         let method = file.method.as_ref().and_then(|method| self.method(method));
-        (Scene { duration: file.duration, gravity, drag, surfaces, balls, rest, method }, tables)
-    }
-
-    fn drag(&mut self, air: &AirTable) -> Option<Drag> {
-        const LAWS: &str = "drag = { linear = k } in kg/s, or drag = { coefficient = C, density = rho }";
-        let Some(table) = &air.drag else {
-            if air.wind.is_some() {
-                let problem = Problem::new("wind without a drag law does nothing");
-                self.refuse(at!["air", "wind"], problem.help(format!("add {LAWS}, or leave `wind` out")));
-            }
-            return None;
-        };
-        let drag = match (table.linear, table.coefficient, table.density) {
-            (Some(k), None, None) => self.accept(at!["air", "drag", "linear"], Drag::linear(k)),
-            (None, Some(coefficient), Some(density)) => {
-                let drag = Drag::quadratic(coefficient, density);
-                let key = if drag.is_err_and(|e| e.name.contains("density")) { "density" } else { "coefficient" };
-                self.accept(at!["air", "drag", key], drag)
-            }
-            (None, Some(_), None) | (None, None, Some(_)) => {
-                let problem = Problem::new("quadratic drag needs both `coefficient` and `density`");
-                self.refuse(at!["air", "drag"], problem.help("about 0.47 for a sphere, and 1.204 kg/m^3 at 20 C"));
-                None
-            }
-            _ => {
-                self.refuse(at!["air", "drag"], Problem::new("drag needs exactly one law").help(LAWS));
-                None
-            }
-        };
-        match air.wind {
-            Some(wind) => drag.and_then(|d| self.accept(at!["air", "wind"], d.in_wind(Vector3::from(wind)))),
-            None => drag,
-        }
+        let Air { drag, magnus, spin_decay, buoyancy } = air;
+        let duration = file.duration;
+        (Scene { duration, gravity, drag, magnus, spin_decay, buoyancy, surfaces, balls, rest, method }, tables)
     }
 
     /// The materials; one that is not valid is there without a value, so that its surfaces are not blamed.
@@ -105,8 +78,7 @@ impl Builder<'_> {
         let mut materials = BTreeMap::new();
         for (name, table) in tables {
             let name = name.as_str();
-            let restitution = Restitution::new(table.restitution);
-            let restitution = self.accept(at!["materials", name, "restitution"], restitution);
+            let restitution = self.restitution(name, table.restitution);
             let (law, friction) = match table.friction {
                 None => ("", Ok(Friction::None)),
                 Some(FrictionTable::Linear(c_f)) => ("linear", Friction::linear(c_f)),
@@ -119,6 +91,19 @@ impl Builder<'_> {
             materials.insert(name.to_owned(), material);
         }
         materials
+    }
+
+    fn restitution(&mut self, material: &str, table: RestitutionTable) -> Option<Restitution> {
+        match table {
+            RestitutionTable::Constant(c_r) => {
+                self.accept(at!["materials", material, "restitution"], Restitution::new(c_r))
+            }
+            RestitutionTable::Falling(FallingTable { coefficient, falls_above }) => {
+                let restitution = Restitution::falling(coefficient, falls_above);
+                let key = if Restitution::new(coefficient).is_err() { "coefficient" } else { "falls_above" };
+                self.accept(at!["materials", material, "restitution", key], restitution)
+            }
+        }
     }
 
     fn balls(&mut self, tables: &[BallTable]) -> (Vec<Ball>, Vec<usize>) {
@@ -138,7 +123,7 @@ impl Builder<'_> {
                 continue;
             }
             for place in places(table.position, count, step) {
-                match Ball::new(place, Vector3::from(table.velocity), table.radius, table.mass) {
+                match ball(place, table) {
                     Ok(ball) => {
                         balls.push(ball);
                         origins.push(i);
@@ -204,6 +189,13 @@ impl Builder<'_> {
         }
         Some(stepping.map_or(Method::Adaptive { tolerance: value }, |make| make(value)))
     }
+}
+
+/// The ball of a table, at `place`.
+fn ball(place: Point3<f64>, table: &BallTable) -> Result<Ball, ValueError> {
+    let ball = Ball::new(place, Vector3::from(table.velocity), table.radius, table.mass)?;
+    let ball = ball.spinning(Vector3::from(table.spin))?;
+    table.inertia.map_or(Ok(ball), |alpha| ball.with_inertia(alpha))
 }
 
 /// The places of a grid, x fastest.

@@ -37,20 +37,49 @@ pub struct SceneFile {
     pub method: Option<MethodTable>,
 }
 
-/// The air.
+/// The air, and what it does to the balls.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a table such as { drag = { linear = 0.05 } }")]
 pub struct AirTable {
-    /// The velocity of the wind, in m/s. Needs a drag law: without resistance, wind does nothing.
+    /// Its density rho in kg/m^3, about 1.204 at 20 C, for all effects that do not give their own.
+    pub density: Option<f64>,
+    /// Its viscosity mu in Pa s, about 1.825e-5 at 20 C; asked for by the drag of a smooth sphere.
+    pub viscosity: Option<f64>,
+    /// The velocity of the wind, in m/s. Needs a drag law or the Magnus force: without them, wind does nothing.
     pub wind: Option<[f64; 3]>,
-    /// The law of air resistance: either `linear`, or `coefficient` and `density`.
+    /// The law of air resistance: `linear`, or `coefficient` and `density`, or "sphere".
     pub drag: Option<DragTable>,
+    /// The Magnus force on balls that spin.
+    pub magnus: Option<MagnusTable>,
+    /// The time constant in s in which the air takes the spin of a ball down to 1/e. Without this key: none is lost.
+    pub spin_decay: Option<f64>,
+    /// Whether the air carries the balls and is taken along by them. Without this key: no.
+    pub buoyancy: Option<bool>,
+}
+
+/// Air resistance: { linear = k }, or { coefficient = C, density = rho } for the quadratic law, or "sphere" for the quadratic law with the
+/// coefficient of a smooth sphere at its Reynolds number, which needs the `density` and the `viscosity` of the air.
+#[derive(Debug, JsonSchema)]
+#[schemars(untagged)]
+pub enum DragTable {
+    /// One of the laws with a number.
+    Law(DragLaw),
+    /// The law of a smooth sphere.
+    Sphere(SphereWord),
+}
+
+/// The word for the drag of a smooth sphere.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SphereWord {
+    /// The coefficient of a smooth sphere at its Reynolds number.
+    Sphere,
 }
 
 /// Air resistance: { linear = k }, or { coefficient = C, density = rho } for the quadratic law.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a table, { linear = k } or { coefficient = C, density = rho }")]
-pub struct DragTable {
+pub struct DragLaw {
     /// k in kg/s of the linear law F = -k (v - w).
     pub linear: Option<f64>,
     /// The drag coefficient C, no unit, of the quadratic law F = -1/2 rho C A |v - w| (v - w); about 0.47 for a sphere.
@@ -59,15 +88,45 @@ pub struct DragTable {
     pub density: Option<f64>,
 }
 
+/// The Magnus force F = 1/2 rho A K r omega x (v - w).
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a table such as { coefficient = 1.0 }")]
+pub struct MagnusTable {
+    /// K, no unit: the lift coefficient is K times the spin parameter r omega / |v - w|.
+    pub coefficient: f64,
+    /// The density rho of the air in kg/m^3, if not that of `[air]`.
+    pub density: Option<f64>,
+}
+
 /// A material.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a table such as { restitution = 0.75 }")]
 pub struct MaterialTable {
-    /// The coefficient of restitution c_r, from 0 (sticks) to 1 (loses nothing).
-    #[schemars(range(min = 0.0, max = 1.0))]
-    pub restitution: f64,
+    /// The coefficient of restitution c_r, from 0 (sticks) to 1 (loses nothing), or a law of it.
+    pub restitution: RestitutionTable,
     /// The law of friction. Without this key: none.
     pub friction: Option<FrictionTable>,
+}
+
+/// Restitution: a number from 0 to 1, or { coefficient = c_r, falls_above = v }.
+#[derive(Debug, Clone, Copy, JsonSchema)]
+#[schemars(untagged)]
+pub enum RestitutionTable {
+    /// The same at every speed.
+    Constant(#[schemars(range(min = 0.0, max = 1.0))] f64),
+    /// Less for faster impacts.
+    Falling(FallingTable),
+}
+
+/// Restitution that falls with the speed.
+#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a table such as { coefficient = 0.9, falls_above = 1.0 }")]
+pub struct FallingTable {
+    /// c_r of slow impacts.
+    #[schemars(range(min = 0.0, max = 1.0))]
+    pub coefficient: f64,
+    /// The closing speed in m/s above which it falls, as v^(-1/4).
+    pub falls_above: f64,
 }
 
 /// Friction at an impact: exactly one of its laws.
@@ -166,6 +225,11 @@ pub struct BallTable {
     pub radius: f64,
     /// Its mass in kg, greater than 0; needed only by effects that divide a force by it.
     pub mass: Option<f64>,
+    /// Its angular velocity at the start, in rad/s, right-handed; needed only by effects of spin.
+    #[serde(default)]
+    pub spin: [f64; 3],
+    /// alpha of its moment of inertia alpha m r^2: 0.4 for a solid sphere, 2/3 for a thin shell. Without this key: 0.4.
+    pub inertia: Option<f64>,
     /// Repeats the ball in a grid.
     pub grid: Option<GridTable>,
 }

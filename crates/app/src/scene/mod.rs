@@ -1,6 +1,8 @@
 //! Scene files: TOML or JSON into a scene, every fault with its place.
 
+mod air;
 mod build;
+mod choices;
 mod de;
 pub mod file;
 mod parse;

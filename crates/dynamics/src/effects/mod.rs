@@ -1,12 +1,15 @@
-//! The effects, one file each: what bends a flight (gravity, drag with wind) and what answers a contact (restitution,
-//! friction).
+//! The effects, one file each: what bends a flight (gravity, buoyancy, drag and wind, the Magnus force and the decay of the spin it
+//! needs) and what answers a contact (restitution, friction).
 
+pub mod buoyancy;
 pub mod drag;
 pub mod friction;
 pub mod gravity;
+pub mod magnus;
 pub mod restitution;
+pub mod spin_decay;
 
-use crate::body::{Ball, State};
+use crate::body::{Body, State};
 use crate::counters::Counters;
 use nalgebra::Vector3;
 
@@ -16,8 +19,8 @@ pub trait Flow: std::fmt::Debug + Send + Sync {
     /// What to call it in messages.
     fn name(&self) -> &'static str;
 
-    /// Its share of the acceleration of `ball` in `state`, in m/s^2.
-    fn acceleration(&self, state: &State, ball: &Ball) -> Vector3<f64>;
+    /// Its share of the acceleration of `body` in `state`, in m/s^2.
+    fn acceleration(&self, state: &State, body: &Body) -> Vector3<f64>;
 
     /// The velocity in m/s towards which it drives a ball, and never away from it; none if it is no resistance.
     fn calms_to(&self) -> Option<Vector3<f64>>;

@@ -1,24 +1,64 @@
-//! Restitution: v_n+ = -c_r v_n- (equation of section 3.2.1 of the chapter).
+//! Restitution: v_n+ = -c_r v_n- (equation of section 3.2.1 of the chapter), with a c_r that is constant or falls with the speed.
+//!
+//! Above a closing speed at which the bodies begin to yield, c_r falls as v^(-1/4): K. L. Johnson, *Contact Mechanics* (1985), section 11.4,
+//! for a fully plastic impact. The fourth root is two square roots.
 
 use crate::error::{ValueError, require};
 
 /// The coefficient of restitution c_r, in [0, 1].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Restitution(f64);
+pub struct Restitution {
+    c_r: f64,
+    /// The closing speed in m/s above which it falls.
+    falls_above: f64,
+}
 
 impl Restitution {
-    /// `c_r` in [0, 1]: 0 sticks, 1 loses nothing.
+    /// `c_r` in [0, 1] at every speed: 0 sticks, 1 loses nothing.
     pub fn new(c_r: f64) -> Result<Self, ValueError> {
-        require("restitution", c_r, "between 0 and 1", (0.0..=1.0).contains(&c_r)).map(Self)
+        let c_r = require("restitution", c_r, "between 0 and 1", (0.0..=1.0).contains(&c_r))?;
+        Ok(Self { c_r, falls_above: f64::INFINITY })
     }
 
-    /// c_r.
+    /// `c_r` up to the closing speed `speed` in m/s, and c_r (speed / v)^(1/4) at a closing speed v above it.
+    pub fn falling(c_r: f64, speed: f64) -> Result<Self, ValueError> {
+        let constant = Self::new(c_r)?;
+        let ok = speed.is_finite() && speed > 0.0;
+        let falls_above = require("the speed above which restitution falls", speed, "finite and > 0, in m/s", ok)?;
+        Ok(Self { falls_above, ..constant })
+    }
+
+    /// c_r of slow impacts: the largest.
     pub fn coefficient(&self) -> f64 {
-        self.0
+        self.c_r
+    }
+
+    /// Whether it falls with the speed, and above which closing speed (m/s).
+    pub fn falls_above(&self) -> Option<f64> {
+        self.falls_above.is_finite().then_some(self.falls_above)
+    }
+
+    /// c_r at the closing speed `closing` >= 0, in m/s.
+    pub fn at(&self, closing: f64) -> f64 {
+        if closing <= self.falls_above { self.c_r } else { self.c_r * (self.falls_above / closing).sqrt().sqrt() }
     }
 
     /// The normal speed after an impact with closing speed `closing` > 0, both in m/s.
     pub fn rebound(&self, closing: f64) -> f64 {
-        self.0 * closing
+        self.at(closing) * closing
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn restitution_falls_with_the_fourth_root_of_the_speed_above_where_it_begins_to() {
+        let steel = Restitution::falling(0.75, 0.5).unwrap();
+        assert_eq!((steel.at(0.0), steel.at(0.25), steel.at(0.5)), (0.75, 0.75, 0.75));
+        assert_eq!((steel.at(8.0), steel.rebound(8.0)), (0.375, 3.0));
+        assert!(Restitution::falling(0.5, 0.0).is_err() && Restitution::falling(1.5, 1.0).is_err());
+        assert_eq!(Restitution::new(0.75).unwrap().at(1e300), 0.75);
     }
 }

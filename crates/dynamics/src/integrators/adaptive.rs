@@ -49,12 +49,12 @@ impl Adaptive {
         Self { tolerance, next: f64::INFINITY }
     }
 
-    /// A step of at most `remaining` seconds under `acceleration`.
+    /// A step of at most `remaining` seconds under `acceleration`, which is told the state and the time since the start of the step, in s.
     pub fn step(
         &mut self,
         state: &State,
         remaining: f64,
-        mut acceleration: impl FnMut(&State) -> Vector3<f64>,
+        mut acceleration: impl FnMut(&State, f64) -> Vector3<f64>,
     ) -> Step {
         let mut h = self.next.min(remaining);
         for _ in 0..MAX_HALVINGS {
@@ -70,11 +70,16 @@ impl Adaptive {
     }
 
     /// One step of `h`, and its error in units of what is allowed.
-    fn attempt(&self, state: &State, h: f64, acceleration: &mut impl FnMut(&State) -> Vector3<f64>) -> (Step, f64) {
+    fn attempt(
+        &self,
+        state: &State,
+        h: f64,
+        acceleration: &mut impl FnMut(&State, f64) -> Vector3<f64>,
+    ) -> (Step, f64) {
         let State { position: x, velocity: v } = *state;
         let zero = Vector3::zeros();
         // Stages relative to v, so that the straight part h v of the path stays exact: u = (v at the stage) - v.
-        let mut a = [acceleration(state), zero, zero, zero, zero, zero, zero];
+        let mut a = [acceleration(state, 0.0), zero, zero, zero, zero, zero, zero];
         let mut u = [zero; 7];
         for (row, weights) in A.iter().enumerate() {
             let stage = row + 1;
@@ -85,7 +90,8 @@ impl Adaptive {
                 dx += u[k] * *w;
             }
             u[stage] = dv * h;
-            a[stage] = acceleration(&State { position: x + (v * share + dx) * h, velocity: v + u[stage] });
+            let at = State { position: x + (v * share + dx) * h, velocity: v + u[stage] };
+            a[stage] = acceleration(&at, share * h);
         }
         let (x_terms, x_error) = dense(&u, h);
         let (v_terms, v_error) = dense(&a, h);

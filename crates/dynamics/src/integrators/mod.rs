@@ -84,7 +84,9 @@ impl Integrator {
                 euler::semi_implicit(state, forces.acceleration(state, counters), timestep)
             }
             Integrator::Stepping(Stepping::Rk4, _) => rk4::step(forces, state, timestep, counters),
-            Integrator::Adaptive(pair) => pair.step(state, timestep, |s| forces.acceleration(s, counters)),
+            Integrator::Adaptive(pair) => {
+                pair.step(state, timestep, |s, after| forces.acceleration_after(s, after, counters))
+            }
         }
     }
 }

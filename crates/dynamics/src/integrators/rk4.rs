@@ -11,19 +11,20 @@ use nalgebra::Vector3;
 /// only at the end of the step.
 pub fn step(forces: &Forces, state: &State, h: f64, counters: &mut Counters) -> Step {
     let State { position: x, velocity: v } = *state;
-    let mut acceleration = |position, velocity| forces.acceleration(&State { position, velocity }, counters);
-    let a1 = acceleration(x, v);
+    let mut acceleration =
+        |position, velocity, after| forces.acceleration_after(&State { position, velocity }, after, counters);
+    let a1 = acceleration(x, v, 0.0);
     let v2 = v + a1 * (0.5 * h);
-    let a2 = acceleration(x + v * (0.5 * h), v2);
+    let a2 = acceleration(x + v * (0.5 * h), v2, 0.5 * h);
     let v3 = v + a2 * (0.5 * h);
-    let a3 = acceleration(x + v2 * (0.5 * h), v3);
+    let a3 = acceleration(x + v2 * (0.5 * h), v3, 0.5 * h);
     let v4 = v + a3 * h;
-    let a4 = acceleration(x + v3 * h, v4);
+    let a4 = acceleration(x + v3 * h, v4, h);
 
     // x1 = x + h v + h^2 q and v1 = v + h p.
     let q = (a1 + a2 + a3) / 6.0;
     let p = (a1 + 2.0 * (a2 + a3) + a4) / 6.0;
-    let a_end = acceleration(x + (v + q * h) * h, v + p * h);
+    let a_end = acceleration(x + (v + q * h) * h, v + p * h, h);
     let h2 = h * h;
     Step {
         path: Path::from_terms(x, &[v * h, (3.0 * q - p) * h2, (p - 2.0 * q) * h2]),

@@ -45,9 +45,20 @@ impl<O: Observer> Walk<'_, O> {
     /// Whether a step of fixed length leaves the ball faster in the air than it can be, which ends its simulation: resistance takes from the speed v - w, and what does not
     /// change adds |a| h at most. (Euler's methods are stable up to k h / m = 2 with linear drag, Runge and Kutta's up to 2.785.)
     fn is_unstable(&mut self, step: &Step) -> bool {
-        let [flow] = self.forces.flows else { return false };
-        let Some(calm) = flow.calms_to().filter(|_| self.integrator.timestep().is_some()) else { return false };
-        let before = (self.state.velocity - calm).norm() + self.forces.constant.norm() * step.time(step.to);
+        if self.integrator.timestep().is_none() || self.forces.are_constant() {
+            return false;
+        }
+        // Of the effects that slow, all to one velocity; what else they are adds at most its own acceleration.
+        let mut calm = None;
+        let mut driven = self.forces.constant.norm();
+        for flow in self.forces.flows {
+            match flow.calms_to() {
+                Some(to) => calm = Some(to),
+                None => driven += flow.acceleration(&self.state, &self.forces.body).norm(),
+            }
+        }
+        let Some(calm) = calm else { return false };
+        let before = (self.state.velocity - calm).norm() + driven * step.time(step.to);
         let after = (step.end().velocity - calm).norm();
         // What is not a number is not stable either.
         let unstable = after.is_nan() || after > before + rate_rounding(before);
