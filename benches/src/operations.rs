@@ -37,22 +37,29 @@ pub struct Bench {
     terrain: Plan,
 }
 
-/// The operations, in the order of the layers; the functions' names are theirs.
-pub const ALL: [fn(&Bench); 14] = [
-    orientation,
-    quadratic_entry,
-    quartic_entry,
-    closest_point_of_triangle,
-    segment_against_triangle,
-    ball_against_triangle,
-    segment_through_tree,
-    segment_against_mesh,
-    ball_against_mesh,
-    touches_of_mesh,
-    tree_over_64_faces,
-    one_ball_for_3_s,
-    ball_in_room_for_1_s,
-    ball_on_terrain_for_2_s,
+/// An operation: its name, and the function of that name that does it [`TIMES`] times.
+pub type Operation = (&'static str, fn(&Bench));
+
+/// Queries of geometry.
+pub const GEOMETRY: [Operation; 11] = [
+    ("orientation", orientation),
+    ("quadratic_entry", quadratic_entry),
+    ("quartic_entry", quartic_entry),
+    ("closest_point_of_triangle", closest_point_of_triangle),
+    ("segment_against_triangle", segment_against_triangle),
+    ("ball_against_triangle", ball_against_triangle),
+    ("segment_through_tree", segment_through_tree),
+    ("segment_against_mesh", segment_against_mesh),
+    ("ball_against_mesh", ball_against_mesh),
+    ("touches_of_mesh", touches_of_mesh),
+    ("tree_over_64_faces", tree_over_64_faces),
+];
+
+/// Flights and scenes.
+pub const SCENES: [Operation; 3] = [
+    ("one_ball_for_3_s", one_ball_for_3_s),
+    ("ball_in_room_for_1_s", ball_in_room_for_1_s),
+    ("ball_on_terrain_for_2_s", ball_on_terrain_for_2_s),
 ];
 
 impl Bench {
@@ -77,7 +84,7 @@ impl Bench {
             segments: starts.iter().map(|(p, v)| [*p, p + v]).collect(),
             throws: starts.iter().map(|(p, v)| Path::parabola(*p, *v, Vector3::new(0.0, 0.0, -4.9))).collect(),
             coefficients: (0..TIMES).map(|_| coefficients()).collect(),
-            one_ball: Plan::new(&scenes::one_ball(3.0)?)?,
+            one_ball: Plan::new(&scenes::one_ball(3.0, 0.8)?)?,
             room: Plan::new(&scenes::balls_in_room(TIMES, 1.0)?)?,
             terrain: Plan::new(&scenes::balls_on_terrain(SQUARES, TIMES, 0.7, 2.0)?)?,
         })
@@ -163,9 +170,8 @@ fn touches_of_mesh(bench: &Bench) {
 #[inline(never)]
 fn tree_over_64_faces(bench: &Bench) {
     // A face for each of the TIMES, so that the count is by face.
-    let boxes: Vec<_> = (0..TIMES as u32)
-        .map(|face| carom_geometry::bounds::Aabb::of_points(&bench.mesh.triangle(face)))
-        .collect();
+    let boxes: Vec<_> =
+        (0..TIMES as u32).map(|face| carom_geometry::bounds::Aabb::of_points(&bench.mesh.triangle(face))).collect();
     black_box(Bvh::build(&boxes));
 }
 

@@ -33,11 +33,11 @@ fn falling(duration: f64) -> Result<Scene> {
     Ok(Scene { gravity, ..Scene::lasting(duration) })
 }
 
-/// Scene A: one ball of 0.1 m falls 1 m onto a plane with e = 0.8, for `duration` seconds.
-pub fn one_ball(duration: f64) -> Result<Scene> {
+/// Scene A, with restitution 0.8 and 3 s: one ball of 0.1 m falls 1 m onto a plane.
+pub fn one_ball(duration: f64, c_r: f64) -> Result<Scene> {
     let floor = Plane::from_point_normal(Point3::origin(), Vector3::z())?;
     Ok(Scene {
-        surfaces: vec![surface("floor", 0.8, Shape::Plane(floor))?],
+        surfaces: vec![surface("floor", c_r, Shape::Plane(floor))?],
         balls: vec![Ball::new(Point3::new(0.0, 0.0, 1.1), Vector3::zeros(), 0.1, None)?],
         ..falling(duration)?
     })

@@ -1,7 +1,7 @@
 //! `cargo xtask instructions`: counts the instructions of a dozen operations with callgrind and compares them with those kept.
 
-use crate::project::Project;
 use crate::Result;
+use crate::project::Project;
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 use std::process::{Command, ExitCode};
@@ -45,7 +45,9 @@ pub fn run(update: bool) -> Result<ExitCode> {
         println!("{name:28} {count:>9}  {:+.1} %{verdict}", 100.0 * change);
     }
     if more > 0 {
-        println!("{more} operations take more instructions than is kept; `cargo xtask instructions --update` accepts them.");
+        println!(
+            "{more} operations take more instructions than is kept; `cargo xtask instructions --update` accepts them."
+        );
     }
     Ok(if more == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }

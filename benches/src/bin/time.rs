@@ -13,7 +13,7 @@ fn main() -> Result<()> {
     let balls = args.get(1).map_or(Ok(10_000), |n| n.parse())?;
     let runs = args.get(2).map_or(Ok(3), |n| n.parse())?;
     match args.first().map_or("b", String::as_str) {
-        "a" => report("a", &scenes::one_ball(3.0)?, 1000 * runs),
+        "a" => report("a", &scenes::one_ball(3.0, 0.8)?, 1000 * runs),
         "room" => report("room", &scenes::balls_in_room(balls, 10.0)?, runs),
         _ => report("b", &scenes::balls_on_terrain(SQUARES, balls, 0.7, 2.0)?, runs),
     }
