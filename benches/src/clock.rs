@@ -2,12 +2,15 @@
 
 use std::time::Instant;
 
+/// Less than this, in s, the system does not tell well.
+const LEAST: f64 = 0.05;
+
 /// The seconds that `work` takes.
 pub fn seconds(work: impl FnOnce()) -> f64 {
     let (cpu, wall) = (on_cpu(), Instant::now());
     work();
     match (cpu, on_cpu()) {
-        (Some(before), Some(after)) => after - before,
+        (Some(before), Some(after)) if after - before > LEAST => after - before,
         _ => wall.elapsed().as_secs_f64(),
     }
 }

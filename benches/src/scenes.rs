@@ -67,6 +67,11 @@ pub fn balls_on_terrain(squares: u32, balls: usize, c_r: f64, duration: f64) -> 
     })
 }
 
+/// A ball on the terrain of 7938 triangles, with restitution 0.9, whose next 8 s are wanted; `balls` of them, one by one.
+pub fn predicted(balls: usize) -> Result<Scene> {
+    balls_on_terrain(63, balls, 0.9, 8.0)
+}
+
 /// Balls of 1 cm in a room of 10 m with six elastic walls, without gravity, at 10 m/s or so.
 pub fn balls_in_room(balls: usize, duration: f64) -> Result<Scene> {
     let mut surfaces = Vec::new();

@@ -174,8 +174,7 @@ fn one_triangle() -> Row {
 
 fn prediction() -> Result<Row> {
     const TIMES: usize = 100;
-    // 2 x 63 x 63 triangles; one ball, 8 s ahead.
-    let plan = Plan::new(&scenes::balls_on_terrain(63, TIMES, 0.7, 8.0)?)?;
+    let plan = Plan::new(&scenes::predicted(TIMES)?)?;
     let (time, _) = run(&plan);
     let carom = 1.0e6 * time / TIMES as f64;
     Ok(Row { work: "one ball 8 s ahead on 7938 triangles", unit: "us", carom, peer: "", theirs: None })

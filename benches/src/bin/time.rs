@@ -14,6 +14,15 @@ fn main() -> Result<()> {
     let runs = args.get(2).map_or(Ok(3), |n| n.parse())?;
     match args.first().map_or("b", String::as_str) {
         "a" => report("a", &scenes::one_ball(3.0, 0.8)?, 1000 * runs),
+        "prediction" => report("prediction", &scenes::predicted(balls)?, runs),
+        "build" => {
+            let (vertices, faces) = carom_benches::terrain::terrain(balls as u32);
+            let (count, start) = (faces.len(), Instant::now());
+            let mesh = carom_geometry::mesh::Mesh::new(vertices, faces)?;
+            let (bytes, seconds) = (mesh.bytes() as f64 / count as f64, start.elapsed().as_secs_f64());
+            println!("{count} faces in {seconds:.2} s, {bytes:.1} bytes a face beside the vertices");
+            Ok(())
+        }
         "room" => report("room", &scenes::balls_in_room(balls, 10.0)?, runs),
         _ => report("b", &scenes::balls_on_terrain(SQUARES, balls, 0.7, 2.0)?, runs),
     }

@@ -66,6 +66,11 @@ impl Child {
         Self(Self::LEAF | ((count as u32 - 1) << Self::COUNT_SHIFT) | start as u32)
     }
 
+    /// The same child after so many more nodes before it.
+    fn after(self, nodes: u32) -> Self {
+        if self.0 & Self::LEAF == 0 { Self(self.0 + nodes) } else { self }
+    }
+
     /// The places of its items, unless it is a node.
     fn items(self) -> Option<std::ops::Range<usize>> {
         let start = (self.0 & (Self::MOST_ITEMS as u32 - 1)) as usize;
@@ -103,14 +108,14 @@ impl Bvh {
     /// The tree over `boxes`; item i is `boxes[i]`. Empty boxes are in no answer, an infinite box is one of the largest
     /// finite numbers. Boxes from number 2^29 on are not taken: callers with so many refuse them first.
     ///
-    /// Takes time n log n. Splits by the surface area heuristic over bins (Wald 2007, "On fast construction of
+    /// Takes time n log n, on all cores, and is the same tree on however many. Splits by the surface area heuristic over bins (Wald 2007, "On fast construction of
     /// SAH-based bounding volume hierarchies"), and by the median where that would get too deep.
     pub fn build(boxes: &[Aabb]) -> Self {
         Self::build_by(boxes.len(), |i| boxes[i])
     }
 
     /// The tree over `count` boxes that are computed as often as they are needed, and never stored.
-    pub(crate) fn build_by(count: usize, box_of: impl Fn(usize) -> Aabb) -> Self {
+    pub(crate) fn build_by(count: usize, box_of: impl Fn(usize) -> Aabb + Sync) -> Self {
         build::build(count, box_of)
     }
 
