@@ -6,6 +6,7 @@ mod balls;
 mod cli;
 mod commands;
 mod error;
+mod events_file;
 mod mesh_file;
 mod output;
 pub mod plot;
@@ -27,6 +28,7 @@ pub fn main() -> ExitCode {
     let result = match &cli.command {
         Command::Run(args) => commands::run::run(args),
         Command::Check(args) => commands::check::check(args),
+        Command::Compare(args) => commands::compare::compare(args),
         Command::Schema => commands::schema::schema(),
         Command::Materials(args) => commands::materials::materials(args),
         Command::Completions(args) => commands::completions::completions(args),
