@@ -1,4 +1,4 @@
-//! The project's own tasks: `cargo xtask verify`, `cargo xtask readme` and `cargo xtask soak`.
+//! The project's own tasks: `cargo xtask help` lists them.
 //!
 //! This crate has no dependencies on purpose: it builds in a second on a fresh clone, and no feature of another crate
 //! can make cargo rebuild it while it runs.
@@ -8,7 +8,7 @@ mod log;
 mod blocks;
 mod commands;
 mod readme;
-mod soak;
+mod tests_bin;
 mod steps;
 mod verify;
 
@@ -18,7 +18,7 @@ use std::process::ExitCode;
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
 /// The tasks, as the README may name them.
-const TASKS: [&str; 3] = ["verify", "readme", "soak"];
+const TASKS: [&str; 4] = ["verify", "readme", "soak", "conformance"];
 
 const HELP: &str = "\
 Usage: cargo xtask TASK
@@ -28,6 +28,7 @@ Tasks:
   verify --only STEP[,STEP]   only these steps
   verify --list               the steps, and what each checks
   readme                      rewrites the generated blocks of README.md
+  conformance                 writes the folder conformance: scenes with the events they must have
   soak --bounces N            bounces balls N times (1e8 say) in scenes of every kind and reports escapes, gains and stalls
   soak --shots M              shoots M points and M balls from inside closed meshes at their edges and vertices
 
@@ -44,7 +45,8 @@ fn main() -> ExitCode {
             Err(error) => return usage(&error.to_string()),
         },
         ["readme"] => readme::rewrite(),
-        ["soak", ref rest @ ..] => soak::run(rest),
+        ["conformance"] => tests_bin::run(&["--bin", "conformance", "--", "conformance"]),
+        ["soak", ref rest @ ..] => tests_bin::run(&[&["--release", "--bin", "soak", "--"], rest].concat()),
         ["help" | "--help" | "-h"] => {
             println!("{HELP}");
             Ok(ExitCode::SUCCESS)

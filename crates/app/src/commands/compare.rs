@@ -43,27 +43,28 @@ pub fn compare(args: &CompareArgs) -> Result<(), AppError> {
     let expected = Expected::read(&args.expected)?;
     let actual = Actual::read(&args.actual)?;
     let mut worst = [Worst::of("time", "s"), Worst::of("place", "m"), Worst::of("velocity", "m/s")];
-    let (mut missing, mut wrong) = (Vec::new(), Vec::new());
+    let (mut failures, mut failed) = (Vec::new(), 0);
     for row in &expected.rows {
+        let before = failures.len();
         let place = format!("line {}: {} {} of ball {}", row.line, row.kind, row.n, row.ball);
         let all = actual.of(row.ball, row.happens());
         if row.kind == "impacts" {
             if all.len() as u64 != row.n {
-                wrong.push(format!("line {}: ball {} has {} impacts, not {}", row.line, row.ball, all.len(), row.n));
+                failures.push(format!("line {}: ball {} has {} impacts, not {}", row.line, row.ball, all.len(), row.n));
             }
-            continue;
+        } else {
+            match usize::try_from(row.n).ok().and_then(|n| all.get(n.checked_sub(1)?)) {
+                None => failures.push(format!("{place} is missing: there are {}", all.len())),
+                Some(event) => judge(args.loosen, row, event, &place, &mut worst, &mut failures),
+            }
         }
-        match usize::try_from(row.n).ok().and_then(|n| all.get(n.checked_sub(1)?)) {
-            None => missing.push(format!("{place}: there are {}", all.len())),
-            Some(event) => judge(args.loosen, row, event, &place, &mut worst, &mut wrong),
-        }
+        failed += usize::from(failures.len() > before);
     }
     print(&table(&worst, expected.rows.len()))?;
-    let failures: Vec<String> = missing.iter().map(|place| format!("missing, {place}")).chain(wrong).collect();
     if failures.is_empty() {
         return Ok(());
     }
-    let mut message = format!("{} of {} targets are not met", failures.len(), expected.rows.len());
+    let mut message = format!("{failed} of {} targets are not met", expected.rows.len());
     failures.iter().take(TOLD).for_each(|failure| write!(message, "\n  {failure}").unwrap_or_default());
     if failures.len() > TOLD {
         write!(message, "\n  and {} more", failures.len() - TOLD).unwrap_or_default();
