@@ -8,11 +8,15 @@ mod commands;
 mod error;
 mod events_file;
 mod mesh_file;
+mod model;
 mod output;
 pub mod plot;
+mod replay;
 mod scene;
+mod stage;
 mod summary;
 mod terminal;
+mod view;
 
 use carom_dynamics::scene::Scene;
 use carom_geometry::mesh::Mesh;
@@ -27,6 +31,8 @@ pub fn main() -> ExitCode {
     let cli = Cli::parse();
     let result = match &cli.command {
         Command::Run(args) => commands::run::run(args),
+        Command::View(args) => commands::view::view(args),
+        Command::Export(args) => commands::export::export(args),
         Command::Check(args) => commands::check::check(args),
         Command::Compare(args) => commands::compare::compare(args),
         Command::Schema => commands::schema::schema(),

@@ -3,9 +3,11 @@
 pub mod check;
 pub mod compare;
 pub mod completions;
+pub mod export;
 pub mod materials;
 pub mod run;
 pub mod schema;
+pub mod view;
 
 use crate::error::AppError;
 use crate::output::target::Target;
