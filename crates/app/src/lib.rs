@@ -6,6 +6,7 @@ mod balls;
 mod cli;
 mod commands;
 mod error;
+mod events_file;
 mod mesh_file;
 mod model;
 mod output;
@@ -33,6 +34,7 @@ pub fn main() -> ExitCode {
         Command::View(args) => commands::view::view(args),
         Command::Export(args) => commands::export::export(args),
         Command::Check(args) => commands::check::check(args),
+        Command::Compare(args) => commands::compare::compare(args),
         Command::Schema => commands::schema::schema(),
         Command::Materials(args) => commands::materials::materials(args),
         Command::Completions(args) => commands::completions::completions(args),
