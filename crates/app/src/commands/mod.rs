@@ -3,7 +3,10 @@
 pub mod check;
 pub mod completions;
 pub mod export;
+pub mod init;
+pub mod man;
 pub mod materials;
+pub mod plot;
 pub mod run;
 pub mod schema;
 pub mod view;
