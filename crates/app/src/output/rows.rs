@@ -6,12 +6,14 @@ use carom_dynamics::events::{Event, EventKind, Motion};
 use carom_dynamics::surface::Surface;
 use std::fmt::{self, Write};
 
-const EVENT_COLUMNS: [&str; 17] = [
+/// The columns of a table of events.
+pub const EVENT_COLUMNS: [&str; 17] = [
     "t", "ball", "kind", "surface", "face", "x", "y", "z", "nx", "ny", "nz", "vx_in", "vy_in", "vz_in", "vx", "vy",
     "vz",
 ];
 
-const FRAME_COLUMNS: [&str; 9] = ["t", "ball", "x", "y", "z", "vx", "vy", "vz", "state"];
+/// The columns of a table of frames.
+pub const FRAME_COLUMNS: [&str; 9] = ["t", "ball", "x", "y", "z", "vx", "vy", "vz", "state"];
 
 /// Writes events.
 pub struct EventRows {
