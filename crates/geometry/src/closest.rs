@@ -345,6 +345,21 @@ mod tests {
         assert!(worst.0 <= CLOSEST_BOUND && worst.1 <= CLOSEST_BOUND, "{worst:?}");
     }
 
+    #[test]
+    fn closest_point_of_a_triangle_like_a_point_from_afar_still_names_the_face() {
+        let t = [(0.0, 0.0), (4.0, 0.0), (0.0, 4.0)].map(|(x, y)| Point3::new(scale(x, -400), scale(y, -400), 0.0));
+        let over = Point3::new(scale(1.0, -400), scale(1.0, -400), 1.0);
+        let closest = closest_point(&t, &over);
+        assert_eq!((closest.feature, closest.offset), (Feature::Face, Vector3::z()));
+    }
+
+    #[test]
+    fn closest_vertex_is_the_vertex_bit_for_bit() {
+        let least = f64::from_bits(1);
+        let t = [(0.0, least), (1e300, 0.0), (0.0, 1e300)].map(|(x, y)| Point3::new(x, y, least));
+        assert_eq!(closest_point(&t, &Point3::new(-1e300, -1e300, 0.0)).point, t[0]);
+    }
+
     /// "A few u": what the tests hold `closest_point` to.
     const CLOSEST_BOUND: f64 = 16.0;
 

@@ -238,3 +238,6 @@ fn escape_direction(corners: &[Point3<f64>; 3], path: &Path, f: f64) -> Vector3<
         None => Vector3::x(),
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -187,6 +187,7 @@ mod tests {
             Path::parabola(Point3::origin(), Vector3::zeros(), Vector3::new(f64::MAX / 4.0, f64::MAX / 4.0, 0.0));
         let (whole, half) = (path.chord(0.0, 1.0).sagitta, path.chord(0.0, 0.5).sagitta);
         assert!(whole.is_finite() && half == whole / 4.0, "{whole:e} {half:e}");
+        assert!(whole >= 0.35 * (f64::MAX / 4.0), "a quarter of the length of the term");
     }
 
     #[test]
@@ -201,5 +202,28 @@ mod tests {
                 assert!((on_path - on_chord).norm() <= chord.sagitta * (1.0 + 1e-12));
             }
         }
+    }
+
+    #[test]
+    fn the_sagitta_bounds_each_power_where_it_bends_most() {
+        for (k, size) in (1..4).flat_map(|k| [1.0, 1e6].map(|size| (k, size))) {
+            let mut terms = [Vector3::zeros(); MAX_DEGREE];
+            terms[k] = Vector3::x() * size;
+            let path = Path::from_terms(Point3::origin(), &terms);
+            let (from, to) = (0.9, 1.0);
+            let chord = path.chord(from, to);
+            let off = path.displacement(0.95).x - (chord.from.x + chord.to.x) / 2.0;
+            assert!(
+                off.abs() <= chord.sagitta * (1.0 + 1e-12) && chord.sagitta < 1.2 * off.abs(),
+                "f^{}: {off:e}",
+                k + 1
+            );
+        }
+    }
+
+    #[test]
+    fn a_box_around_a_straight_stretch_is_that_of_its_ends() {
+        let path = Path::line(Point3::new(1.0, 2.0, 3.0), Vector3::new(2.0, -1.0, 4.0));
+        assert_eq!(path.bounds(0.5, 1.0), Aabb::of_points(&[Point3::new(2.0, 1.5, 5.0), Point3::new(3.0, 1.0, 7.0)]));
     }
 }

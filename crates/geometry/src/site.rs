@@ -235,3 +235,6 @@ impl Bend {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

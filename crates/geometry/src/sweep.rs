@@ -249,3 +249,6 @@ impl Mesh {
         self.bounds().extent().amax() / (self.faces().len() as f64).sqrt()
     }
 }
+
+#[cfg(test)]
+mod tests;
