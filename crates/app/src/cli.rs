@@ -41,6 +41,8 @@ pub enum Command {
     Check(CheckArgs),
     /// Print the JSON schema of scene files, for editors
     Schema,
+    /// Print the balls that scenes can call by name, with the sources of what is known of them
+    Balls(BallsArgs),
     /// Print tables of restitution and friction, with their sources
     Materials(MaterialsArgs),
     /// Print the completions of a shell
@@ -88,6 +90,14 @@ pub struct CheckArgs {
     /// A scene (.toml, .json) or a mesh (.obj, .stl, .ply)
     #[arg(value_name = "SCENE-OR-MESH", value_hint = ValueHint::FilePath)]
     pub file: PathBuf,
+}
+
+/// What `balls` takes.
+#[derive(Debug, Args)]
+pub struct BallsArgs {
+    /// Print JSON instead of a table
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// What `materials` takes.

@@ -8,6 +8,7 @@ mod commands;
 mod error;
 mod mesh_file;
 mod output;
+mod presets;
 mod scene;
 mod summary;
 mod terminal;
@@ -23,6 +24,7 @@ pub fn main() -> ExitCode {
         Command::Run(args) => commands::run::run(args),
         Command::Check(args) => commands::check::check(args),
         Command::Schema => commands::schema::schema(),
+        Command::Balls(args) => commands::balls::balls(args),
         Command::Materials(args) => commands::materials::materials(args),
         Command::Completions(args) => commands::completions::completions(args),
     };

@@ -20,6 +20,7 @@ use carom_geometry::mesh::Mesh;
 use carom_geometry::plane::Plane;
 use carom_geometry::rounding::{UNIT_ROUNDOFF, point_radius};
 use nalgebra::{Point3, Vector3};
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// A scene made ready: what is off is not in it.
@@ -35,6 +36,8 @@ pub struct Plan {
     pub(crate) planes: Vec<(usize, Plane)>,
     pub(crate) meshes: Vec<(usize, Arc<Mesh>)>,
     pub(crate) surfaces: Vec<PlannedSurface>,
+    /// Whether a surface asks each ball for its restitution.
+    restitution_of_ball: bool,
     pub(crate) balls: Vec<Ball>,
     pub(crate) rest: RestThresholds,
     pub(crate) method: Method,
@@ -44,7 +47,7 @@ pub struct Plan {
 }
 
 /// What the loop needs to know of a surface whatever its shape.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct PlannedSurface {
     pub material: Material,
     /// Place in the order of the names: ties are broken by it, not by the order of the scene.
@@ -79,6 +82,16 @@ impl Plan {
         {
             return Err(SceneError::MassMissing { ball, effect });
         }
+        let drag_of_ball = scene.drag.is_some_and(|drag| drag.is_of_ball());
+        let restitution_of_ball = scene.surfaces.iter().any(|s| s.material.restitution.is_of_ball());
+        for (ball, b) in scene.balls.iter().enumerate() {
+            if drag_of_ball && b.drag().is_none() {
+                return Err(SceneError::OwnMissing { ball, what: "drag coefficient", effect: "the drag law" });
+            }
+            if restitution_of_ball && b.restitution().is_none() {
+                return Err(SceneError::OwnMissing { ball, what: "restitution", effect: "a material" });
+            }
+        }
         let method = method(scene, &spinning_flows)?;
         let (planes, meshes) = shapes(scene);
         let size = Size::of(scene, &planes, &meshes);
@@ -109,6 +122,7 @@ impl Plan {
             planes,
             meshes,
             surfaces: surfaces.collect(),
+            restitution_of_ball,
             balls: scene.balls.clone(),
             rest: scene.rest.unwrap_or(RestThresholds::Length(default_rest_length(size.extent, size.farthest))),
             method,
@@ -163,9 +177,21 @@ impl Plan {
             constant: self.constant_acceleration(ball),
             flows: if spins { &self.spinning_flows } else { &self.flows },
             ball,
-            body: Body { radius: ball.radius(), inertia, spin: ball.spin() },
+            body: Body { radius: ball.radius(), inertia, drag: ball.drag().unwrap_or(0.0), spin: ball.spin() },
             decay: self.spin_decay.filter(|_| spins),
         }
+    }
+
+    /// The surfaces as `ball` meets them.
+    pub(crate) fn surfaces_for(&self, ball: &Ball) -> Cow<'_, [PlannedSurface]> {
+        if !self.restitution_of_ball {
+            return Cow::Borrowed(&self.surfaces);
+        }
+        let of_ball = |surface: &PlannedSurface| {
+            let restitution = surface.material.restitution.for_ball(ball);
+            PlannedSurface { material: Material { restitution, ..surface.material }, ..*surface }
+        };
+        self.surfaces.iter().map(of_ball).collect()
     }
 
     pub(crate) fn integrator(&self) -> Integrator {

@@ -21,18 +21,20 @@ use crate::forces::Forces;
 use crate::integrators::adaptive::Adaptive;
 use crate::integrators::{Integrator, Step};
 use crate::observer::{Observer, Segment};
-use crate::plan::Plan;
+use crate::plan::{Plan, PlannedSurface};
 use crate::tolerance::{EVENT_BUDGET, FARTHEST, MAX_STANDSTILL, SLIDING_TOLERANCE, STEP_BUDGET, time_resolution};
 use nalgebra::Vector3;
 
 /// Simulates one ball of `plan` to the end and shows it to `observer`.
 pub fn simulate(plan: &Plan, ball: &Ball, observer: &mut impl Observer) -> Outcome {
     let forces = plan.forces(ball);
+    let surfaces = plan.surfaces_for(ball);
     let mut counters = Counters::default();
     let start = ball.start();
     let a = forces.acceleration(&start, &mut counters);
     let mut walk = Walk {
         plan,
+        surfaces: &surfaces,
         forces,
         obstacles: Obstacles::new(plan, ball.radius(), &start, &a),
         integrator: plan.integrator(),
@@ -85,6 +87,8 @@ struct Settling {
 /// One ball on its way.
 struct Walk<'a, O> {
     plan: &'a Plan,
+    /// What it can meet, as it meets them.
+    surfaces: &'a [PlannedSurface],
     forces: Forces<'a>,
     obstacles: Obstacles<'a>,
     integrator: Integrator,
@@ -173,7 +177,7 @@ impl<O: Observer> Walk<'_, O> {
     }
 
     fn tell(&mut self, kind: EventKind, contact: &Contact, velocity_in: Vector3<f64>) {
-        let numbered = self.plan.surfaces[contact.surface].numbered;
+        let numbered = self.surfaces[contact.surface].numbered;
         self.events += 1;
         self.observer.event(&Event {
             time: self.clock.now(),

@@ -17,6 +17,8 @@ enum Law {
     Linear(f64),
     /// F = -1/2 rho C A |v - w| (v - w); holds C rho in kg/m^3.
     Quadratic(f64),
+    /// The same with the C of each ball; holds rho in kg/m^3.
+    OfBall(f64),
     /// The same with C of a smooth sphere at its Reynolds number.
     Sphere { density: f64, viscosity: f64 },
 }
@@ -67,6 +69,13 @@ impl Drag {
         Ok(Self { law: Law::Quadratic(coefficient * density), wind: Vector3::zeros() })
     }
 
+    /// The quadratic law with the drag coefficient of each ball, in still air of `density` rho in kg/m^3.
+    pub fn of_ball(density: f64) -> Result<Self, ValueError> {
+        let ok = density.is_finite() && density >= 0.0;
+        require("air density", density, "finite and >= 0, in kg/m^3", ok)?;
+        Ok(Self { law: Law::OfBall(density), wind: Vector3::zeros() })
+    }
+
     /// The drag of a smooth sphere, whose coefficient follows from its speed, in still air of `density` rho in kg/m^3 and `viscosity` mu in
     /// Pa s; right up to a Reynolds number of 10^6. See [`sphere_coefficient`].
     pub fn sphere(density: f64, viscosity: f64) -> Result<Self, ValueError> {
@@ -89,8 +98,15 @@ impl Drag {
 
     /// Whether it resists nothing: then it is not even asked.
     pub fn is_none(&self) -> bool {
-        matches!(self.law, Law::Linear(0.0) | Law::Quadratic(0.0))
-            || matches!(self.law, Law::Sphere { density: 0.0, .. })
+        match self.law {
+            Law::Linear(k) => k == 0.0,
+            Law::Quadratic(rho) | Law::OfBall(rho) | Law::Sphere { density: rho, .. } => rho == 0.0,
+        }
+    }
+
+    /// Whether it asks each ball for its drag coefficient.
+    pub fn is_of_ball(&self) -> bool {
+        matches!(self.law, Law::OfBall(_))
     }
 
     /// Whether its force is in proportion to the relative speed.
@@ -103,6 +119,7 @@ impl Drag {
         match self.law {
             Law::Linear(k) => k,
             Law::Quadratic(c_rho) => 0.5 * c_rho * body.area() * speed,
+            Law::OfBall(rho) => 0.5 * (body.drag * rho) * body.area() * speed,
             Law::Sphere { density, viscosity } => {
                 let re = density * speed * (2.0 * body.radius) / viscosity;
                 let creeping = STOKES / 4.0 * std::f64::consts::PI * viscosity * body.radius;
@@ -136,7 +153,7 @@ mod tests {
     use super::*;
     use nalgebra::Point3;
 
-    const BODY: Body = Body { radius: 0.5, inertia: 2.0, spin: Vector3::new(0.0, 0.0, 0.0) };
+    const BODY: Body = Body { radius: 0.5, inertia: 2.0, drag: 0.5, spin: Vector3::new(0.0, 0.0, 0.0) };
 
     fn moving(velocity: Vector3<f64>) -> State {
         State { position: Point3::origin(), velocity }

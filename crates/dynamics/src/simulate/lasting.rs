@@ -37,7 +37,7 @@ impl<O: Observer> Walk<'_, O> {
                 let pressed = -contact.normal.dot(&free) - carrier.centripetal(&self.state.velocity);
                 carrying[i] = self.ends_bouncing(contact, pressed);
                 more |= carrying[i];
-                let c_r = self.plan.surfaces[contact.surface].material.restitution.coefficient();
+                let c_r = self.surfaces[contact.surface].material.restitution.coefficient();
                 if carrying[i] && contact.rate > 0.0 && c_r < 1.0 {
                     // Around an edge the way along the surface is no flight: there the hops end at once.
                     let flat = carrier.bend == Bend::Flat;
@@ -87,7 +87,7 @@ impl<O: Observer> Walk<'_, O> {
         self.counters.rest += 1;
         // What loses nothing bounces for ever. The air takes from each hop; an elastic surface with
         // friction loses in a corner, without end.
-        let material = &self.plan.surfaces[contact.surface].material;
+        let material = &self.surfaces[contact.surface].material;
         let smooth = material.friction.in_contact() == ContactFriction::Sliding(0.0);
         let in_air = !self.forces.are_constant();
         let loses = material.restitution.coefficient() < 1.0 || !smooth || in_air || self.standstill > PATIENCE;
@@ -113,7 +113,7 @@ impl<O: Observer> Walk<'_, O> {
             .map(|contact| Carrier {
                 contact: *contact,
                 bend: self.obstacles.bend(contact),
-                friction: self.plan.surfaces[contact.surface].material.friction.in_contact(),
+                friction: self.surfaces[contact.surface].material.friction.in_contact(),
                 radius: self.obstacles.radius_at(contact),
             })
             .collect()
@@ -314,7 +314,7 @@ impl<O: Observer> Walk<'_, O> {
     fn end_settling(&mut self) {
         if let Some(settling) = self.settling.take() {
             let contact = self.contacts[settling.contact];
-            let material = &self.plan.surfaces[contact.surface].material;
+            let material = &self.surfaces[contact.surface].material;
             let c_r = material.restitution.coefficient();
             self.state.velocity = material.friction.slow_to_the_end(self.state.velocity, settling.closing, c_r);
             self.begin_sliding();
