@@ -9,6 +9,7 @@ pub mod hunt;
 pub mod nasty;
 pub mod obj;
 pub mod oracle;
+pub mod parallel;
 pub mod random;
 pub mod sources;
 pub mod stage;

@@ -15,13 +15,14 @@ const SHOWN: usize = 400;
 pub struct Log {
     file: File,
     path: PathBuf,
+    shown: String,
 }
 
 impl Log {
     /// An empty log at `path`, in place of an older one.
     pub fn create(path: &Path) -> Result<Self> {
         fs::create_dir_all(path.parent().ok_or("a log needs a folder")?)?;
-        Ok(Self { file: File::create(path)?, path: path.to_path_buf() })
+        Ok(Self { file: File::create(path)?, path: path.to_path_buf(), shown: String::new() })
     }
 
     /// Adds a line.
@@ -44,6 +45,29 @@ impl Log {
         self.file.seek(SeekFrom::End(0))?;
         self.line(&format!("({status}, {:.1} s)\n", start.elapsed().as_secs_f64()))?;
         Ok(status.success())
+    }
+
+    /// As [`Self::run`], and what it prints on standard output is for the person who waits as well.
+    pub fn run_shown(&mut self, command: &mut Command) -> Result<bool> {
+        let shown = show(command);
+        self.line(&format!("$ {shown}"))?;
+        let stderr = self.file.try_clone()?;
+        let output = command
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(stderr)
+            .output()
+            .map_err(|error| format!("{shown}: {error}"))?;
+        self.file.seek(SeekFrom::End(0))?;
+        let text = String::from_utf8_lossy(&output.stdout);
+        self.line(&text)?;
+        self.shown += &text;
+        Ok(output.status.success())
+    }
+
+    /// What the step has to show even if all is well.
+    pub fn shown(&self) -> &str {
+        &self.shown
     }
 
     /// What to show of a failed step: everything but the lines about what went well, from the end.

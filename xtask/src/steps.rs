@@ -18,13 +18,19 @@ pub struct Step {
 
 /// Cheap ones first. The debug profile is built once, for the tests; the release profile once, for the scenes and the
 /// README.
-pub const STEPS: [Step; 8] = [
+pub const STEPS: [Step; 10] = [
     Step { name: "format", what: "the code is formatted", run: format },
     Step { name: "clippy", what: "no warning of rustc or clippy, in any target", run: clippy },
     Step { name: "tests", what: "the tests of every crate; no snapshot is written", run: tests },
     Step { name: "doctests", what: "the examples in the documentation", run: doctests },
     Step { name: "docs", what: "the documentation builds without a warning", run: docs },
     Step { name: "snapshots", what: "no snapshot waits for review", run: snapshots },
+    Step { name: "catalogue", what: "the hard cases: what breaks elsewhere, our figure, the bound", run: catalogue },
+    Step {
+        name: "checker",
+        what: "every ball of the mesh scenes, by brute force and without the solver",
+        run: checker,
+    },
     Step { name: "scenes", what: "the scenes of the program are valid and run to their end", run: scenes },
     Step { name: "readme", what: "the README's commands exist and its generated blocks are fresh", run: readme },
 ];
@@ -79,6 +85,21 @@ fn find_waiting(folder: &Path, found: &mut Vec<PathBuf>) -> io::Result<()> {
         }
     }
     Ok(())
+}
+
+fn catalogue(project: &Project, log: &mut Log) -> Result<bool> {
+    log.run_shown(&mut project.cargo(["run", "--quiet", "--package", "carom-tests", "--bin", "catalogue"]))
+}
+
+fn checker(project: &Project, log: &mut Log) -> Result<bool> {
+    let mut meshes = Vec::new();
+    for scene in project.scenes()? {
+        if project.read(&scene)?.contains("mesh =") {
+            meshes.push(scene);
+        }
+    }
+    let checker = ["run", "--quiet", "--package", "carom-tests", "--bin", "checker", "--"];
+    log.run_shown(project.cargo(checker).args(meshes))
 }
 
 fn scenes(project: &Project, log: &mut Log) -> Result<bool> {

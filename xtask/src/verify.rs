@@ -48,6 +48,9 @@ pub fn run(steps: &[&'static Step]) -> Result<ExitCode> {
         std::io::stdout().flush()?;
         let report = one(&project, step)?;
         println!("{:>6}  {:>6.1} s", mark(report.passed), report.seconds);
+        if !report.log.shown().is_empty() {
+            println!("\n{}", report.log.shown());
+        }
         reports.push(report);
     }
     summarise(&reports, start.elapsed().as_secs_f64())

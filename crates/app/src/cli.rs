@@ -33,6 +33,11 @@ pub enum Command {
     /// Prints a short summary on standard error. Events, frames and a summary in JSON are written where asked for; a file
     /// appears only once it is complete.
     Run(RunArgs),
+    /// Tell which effects a scene has, which it would need, what each changes and what it costs
+    ///
+    /// Each effect that is on is taken out, each that is off is put in with the data of the scene (and air at 20 C), and the first flights and
+    /// impacts are compared with those of the scene as it is, and with a prediction by formula. What is off and would matter comes first.
+    Explain(ExplainArgs),
     /// List all that is wrong with a scene or a mesh
     ///
     /// A scene (.toml, .json) is read as `run` would read it, and the meshes it names are examined. A mesh (.obj, .stl, .ply)
@@ -84,6 +89,26 @@ pub struct RunArgs {
     pub quiet: bool,
 }
 
+/// What `explain` takes.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  carom explain room.toml
+  carom explain room.toml --tolerance 0.001 --json")]
+pub struct ExplainArgs {
+    /// The scene: a .toml or .json file
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub scene: PathBuf,
+    /// The share of a time, a speed or a way by which an effect must change something to matter
+    #[arg(long, value_name = "SHARE", default_value = "0.01", value_parser = share)]
+    pub tolerance: f64,
+    /// Read the balls from FILE instead of the scene, as `run` does
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub balls: Option<PathBuf>,
+    /// Print JSON, with all digits
+    #[arg(long)]
+    pub json: bool,
+}
+
 /// What `check` takes.
 #[derive(Debug, Args)]
 pub struct CheckArgs {
@@ -123,4 +148,10 @@ fn frames_per_second(word: &str) -> Result<f64, String> {
         None => number(word)?,
     };
     if fps.is_finite() && fps > 0.0 { Ok(fps) } else { Err("frames per second must be finite and > 0".to_owned()) }
+}
+
+/// Reads a finite number above 0.
+fn share(word: &str) -> Result<f64, String> {
+    let share: f64 = word.trim().parse().map_err(|_| format!("`{word}` is not a number"))?;
+    if share.is_finite() && share > 0.0 { Ok(share) } else { Err("the share must be finite and > 0".to_owned()) }
 }

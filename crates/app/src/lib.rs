@@ -8,13 +8,17 @@ mod commands;
 mod error;
 mod mesh_file;
 mod output;
+pub mod plot;
 mod presets;
 mod scene;
 mod summary;
 mod terminal;
 
+use carom_dynamics::scene::Scene;
 use clap::Parser;
 use cli::{Cli, Command};
+use nalgebra::Point3;
+use std::path::Path;
 use std::process::ExitCode;
 
 /// Runs the program with the arguments of the process, and says how it ended: `carom --help` lists the exit codes.
@@ -22,6 +26,7 @@ pub fn main() -> ExitCode {
     let cli = Cli::parse();
     let result = match &cli.command {
         Command::Run(args) => commands::run::run(args),
+        Command::Explain(args) => commands::explain::explain(args),
         Command::Check(args) => commands::check::check(args),
         Command::Schema => commands::schema::schema(),
         Command::Balls(args) => commands::balls::balls(args),
@@ -35,4 +40,19 @@ pub fn main() -> ExitCode {
             error.exit_code()
         }
     }
+}
+
+/// The scene in the file at `path`, TOML or JSON by its extension, with the meshes it names read; in SI units.
+///
+/// Fails with all that is wrong with the file, in the words that `carom check` shows.
+pub fn read_scene(path: &Path) -> Result<Scene, String> {
+    scene::load(path, None).map(|loaded| loaded.scene).map_err(|error| error.render(false))
+}
+
+/// The vertices and triangles in the mesh file at `path`: OBJ, STL or PLY by its extension, in the unit of the file.
+///
+/// Every index is in range and every coordinate finite. Fails with what is wrong, and in which line.
+pub fn read_mesh(path: &Path) -> Result<(Vec<Point3<f64>>, Vec<[u32; 3]>), String> {
+    let mesh = mesh_file::read(path).map_err(|error| error.to_string())?;
+    Ok((mesh.vertices, mesh.faces))
 }

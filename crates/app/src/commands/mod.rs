@@ -3,6 +3,7 @@
 pub mod balls;
 pub mod check;
 pub mod completions;
+pub mod explain;
 pub mod materials;
 pub mod run;
 pub mod schema;

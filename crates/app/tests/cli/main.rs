@@ -4,5 +4,6 @@ mod balls;
 mod bad_input;
 mod commands;
 mod common;
+mod explain;
 mod run;
 mod scenes;

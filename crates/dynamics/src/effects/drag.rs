@@ -15,8 +15,8 @@ use nalgebra::Vector3;
 enum Law {
     /// F = -k (v - w), k in kg/s.
     Linear(f64),
-    /// F = -1/2 rho C A |v - w| (v - w); holds C rho in kg/m^3.
-    Quadratic(f64),
+    /// F = -1/2 rho C A |v - w| (v - w).
+    Quadratic { coefficient: f64, density: f64 },
     /// The same with the C of each ball; holds rho in kg/m^3.
     OfBall(f64),
     /// The same with C of a smooth sphere at its Reynolds number.
@@ -66,7 +66,7 @@ impl Drag {
         let ok = |x: f64| x.is_finite() && x >= 0.0;
         require("drag coefficient", coefficient, "finite and >= 0", ok(coefficient))?;
         require("air density", density, "finite and >= 0, in kg/m^3", ok(density))?;
-        Ok(Self { law: Law::Quadratic(coefficient * density), wind: Vector3::zeros() })
+        Ok(Self { law: Law::Quadratic { coefficient, density }, wind: Vector3::zeros() })
     }
 
     /// The quadratic law with the drag coefficient of each ball, in still air of `density` rho in kg/m^3.
@@ -96,11 +96,20 @@ impl Drag {
         self.wind
     }
 
+    /// The density of the air in kg/m^3, if the law names it.
+    pub fn density(&self) -> Option<f64> {
+        match self.law {
+            Law::Linear(_) => None,
+            Law::Quadratic { density, .. } | Law::OfBall(density) | Law::Sphere { density, .. } => Some(density),
+        }
+    }
+
     /// Whether it resists nothing: then it is not even asked.
     pub fn is_none(&self) -> bool {
         match self.law {
             Law::Linear(k) => k == 0.0,
-            Law::Quadratic(rho) | Law::OfBall(rho) | Law::Sphere { density: rho, .. } => rho == 0.0,
+            Law::Quadratic { coefficient, density } => coefficient * density == 0.0,
+            Law::OfBall(density) | Law::Sphere { density, .. } => density == 0.0,
         }
     }
 
@@ -118,8 +127,8 @@ impl Drag {
     pub fn force_per_speed(&self, speed: f64, body: &Body) -> f64 {
         match self.law {
             Law::Linear(k) => k,
-            Law::Quadratic(c_rho) => 0.5 * c_rho * body.area() * speed,
-            Law::OfBall(rho) => 0.5 * (body.drag * rho) * body.area() * speed,
+            Law::Quadratic { coefficient, density } => 0.5 * (coefficient * density) * body.area() * speed,
+            Law::OfBall(density) => 0.5 * (body.drag * density) * body.area() * speed,
             Law::Sphere { density, viscosity } => {
                 let re = density * speed * (2.0 * body.radius) / viscosity;
                 let creeping = STOKES / 4.0 * std::f64::consts::PI * viscosity * body.radius;

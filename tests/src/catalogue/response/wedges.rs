@@ -190,7 +190,6 @@ fn narrowing_wedge() -> Figure {
             .ball([x, y, 0.0], [across * half.sin(), -across * half.cos(), 1.0], r)
             .run();
         let place = || format!("{degrees} degrees, e = {e}, {across} m/s across");
-        println!("{} {}", place(), run.trajectory.events.len());
         check.that(run.outcome.ending == Ending::Completed, || format!("{}: {:?}", place(), run.outcome.ending));
         check.that(run.outcome.motion != Motion::Flying, || format!("{}: flies at the end", place()));
         check.within(0.0, overlap(&run, &wedge, r), 64.0 * U * (reach + 20.0), || format!("{}: overlap", place()));
