@@ -1,5 +1,6 @@
 //! The command line: commands, options and their help.
 
+use crate::model::Keys;
 use clap::{Args, Parser, Subcommand, ValueHint};
 use clap_complete::Shell;
 use std::num::NonZeroUsize;
@@ -38,6 +39,17 @@ pub enum Command {
     /// Each effect that is on is taken out, each that is off is put in with the data of the scene (and air at 20 C), and the first flights and
     /// impacts are compared with those of the scene as it is, and with a prediction by formula. What is off and would matter comes first.
     Explain(ExplainArgs),
+    /// Show a scene: write a page that plays it in any browser
+    ///
+    /// Simulates the scene and writes one HTML file that needs nothing else, not even a network: surfaces and balls in 3-D, to
+    /// turn, pause, scrub and follow, every impact with its data, energy over time.
+    View(ViewArgs),
+    /// Take a scene elsewhere: write a model with its motion, for programs of 3-D
+    ///
+    /// Simulates the scene and writes surfaces, balls and motion as glTF 2.0, one .glb file. Each event is a key with the velocities
+    /// before and after it (CUBICSPLINE), so that a flight between two of them is the exact parabola; other motions
+    /// are off by no more than single precision is.
+    Export(ExportArgs),
     /// List all that is wrong with a scene or a mesh
     ///
     /// A scene (.toml, .json) is read as `run` would read it, and the meshes it names are examined. A mesh (.obj, .stl, .ply)
@@ -61,9 +73,6 @@ pub enum Command {
   carom run room.toml --events events.csv --frames frames.csv --fps 30
   carom run room.toml --balls balls.csv --events - | head")]
 pub struct RunArgs {
-    /// The scene: a .toml or .json file
-    #[arg(value_hint = ValueHint::FilePath)]
-    pub scene: PathBuf,
     /// Write the events (impacts, slides, rests ...) to FILE: .csv or .jsonl; `-` is standard output, as CSV
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub events: Option<PathBuf>,
@@ -76,6 +85,17 @@ pub struct RunArgs {
     /// Write the summary to FILE as JSON; `-` is standard output
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub summary: Option<PathBuf>,
+    /// What to simulate.
+    #[command(flatten)]
+    pub input: SceneArgs,
+}
+
+/// What every command takes that simulates a scene.
+#[derive(Debug, Args)]
+pub struct SceneArgs {
+    /// The scene: a .toml or .json file
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub scene: PathBuf,
     /// Read the balls from FILE instead of the scene; `-` is standard input
     ///
     /// CSV with a header: x,y,z and any of vx,vy,vz,radius,mass, with the defaults of a scene.
@@ -109,6 +129,38 @@ pub struct ExplainArgs {
     pub json: bool,
 }
 
+/// What `view` takes.
+#[derive(Debug, Args)]
+#[command(after_help = "Example:
+  carom view room.toml -o room.html")]
+pub struct ViewArgs {
+    /// Write the page to FILE; `-` is standard output
+    #[arg(long, short, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub output: PathBuf,
+    /// What to simulate.
+    #[command(flatten)]
+    pub input: SceneArgs,
+}
+
+/// What `export` takes.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  carom export room.toml -o room.glb
+  carom export room.toml -o room.glb --keys fps=30")]
+pub struct ExportArgs {
+    /// Write the model to FILE, a .glb; `-` is standard output
+    #[arg(long, short, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub output: PathBuf,
+    /// What the motion is given by: `events`, or `fps=N` for programs that ignore velocities
+    ///
+    /// `fps=N` is a position for every N-th of a second, and straight lines between them.
+    #[arg(long, value_name = "KEYS", default_value = "events", value_parser = keys)]
+    pub keys: Keys,
+    /// What to simulate.
+    #[command(flatten)]
+    pub input: SceneArgs,
+}
+
 /// What `check` takes.
 #[derive(Debug, Args)]
 pub struct CheckArgs {
@@ -138,6 +190,15 @@ pub struct MaterialsArgs {
 pub struct CompletionsArgs {
     /// The shell
     pub shell: Shell,
+}
+
+/// Reads `events` or `fps=N`.
+fn keys(word: &str) -> Result<Keys, String> {
+    match (word, word.strip_prefix("fps=")) {
+        ("events", _) => Ok(Keys::Events),
+        (_, Some(number)) => Ok(Keys::Frames { fps: frames_per_second(number)? }),
+        _ => Err("keys are `events`, or `fps=N` such as fps=30".to_owned()),
+    }
 }
 
 /// Reads `N` or `A/B`, finite and above 0.

@@ -56,4 +56,5 @@ pub mod sliding;
 pub mod observer;
 pub mod simulate;
 pub mod run;
+pub mod accuracy;
 pub mod explain;

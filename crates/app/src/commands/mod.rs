@@ -4,9 +4,11 @@ pub mod balls;
 pub mod check;
 pub mod completions;
 pub mod explain;
+pub mod export;
 pub mod materials;
 pub mod run;
 pub mod schema;
+pub mod view;
 
 use crate::error::AppError;
 use crate::output::target::Target;

@@ -6,7 +6,7 @@ use crate::common::{Folder, shown};
 fn help_of_every_command() {
     let folder = Folder::with(&[]);
     insta::assert_snapshot!("help", shown(&folder.run(&["--help"])));
-    for command in ["run", "explain", "check", "schema", "balls", "materials", "completions"] {
+    for command in ["run", "view", "explain", "check", "schema", "balls", "materials", "completions"] {
         insta::assert_snapshot!(format!("help_{command}"), shown(&folder.run(&[command, "--help"])));
     }
 }

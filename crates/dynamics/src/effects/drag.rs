@@ -12,7 +12,7 @@ use nalgebra::Vector3;
 
 /// How the resistance grows with the speed relative to the air.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Law {
+pub(crate) enum Law {
     /// F = -k (v - w), k in kg/s.
     Linear(f64),
     /// F = -1/2 rho C A |v - w| (v - w).
@@ -89,6 +89,10 @@ impl Drag {
     pub fn in_wind(self, wind: Vector3<f64>) -> Result<Self, ValueError> {
         require_finite("wind", &wind)?;
         Ok(Self { wind, ..self })
+    }
+
+    pub(crate) fn law(&self) -> Law {
+        self.law
     }
 
     /// The wind in m/s.

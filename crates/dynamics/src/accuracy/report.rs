@@ -1,0 +1,252 @@
+//! What a measurement of accuracy gives: methods, errors, work, time; the order of each, the front of all, the cheapest for a tolerance.
+
+use super::compare::{Ends, Errors, EulerLaws, Shares};
+use super::course::Reach;
+use super::fit::Order;
+use super::variant::{Approach, Variant};
+use crate::counters::Counters;
+use crate::scene::Method;
+use std::fmt;
+
+/// What the methods are compared with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ReferenceKind {
+    /// Parabolas from bounce to bounce on planes, in closed form, evaluated in 128 bits.
+    ClosedForm,
+    /// The same physics in 128 bits: Taylor series, and every surface on its own.
+    Extended,
+}
+
+impl fmt::Display for ReferenceKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::ClosedForm => "the closed form, in 128 bits",
+            Self::Extended => "a solver of its own in 128 bits: Taylor series of order 30, every surface by itself",
+        })
+    }
+}
+
+/// Time by the clock.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cost {
+    /// ns for a second of one ball.
+    pub per_second: f64,
+    /// ns for an impact, if there are any.
+    pub per_impact: Option<f64>,
+}
+
+/// One method with one step or tolerance.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measurement {
+    /// Which method.
+    pub variant: Variant,
+    /// Its step in s or its tolerance; 0 for the exact flight.
+    pub value: f64,
+    /// The mean length of its steps in s.
+    pub mean_step: f64,
+    /// Its errors.
+    pub errors: Errors,
+    /// The parts of the error of the positions.
+    pub shares: Shares,
+    /// Euler's laws, where they apply.
+    pub laws: Option<EulerLaws>,
+    /// Where the balls are at the end.
+    pub ends: Ends,
+    /// What was evaluated; the same on every machine.
+    pub counters: Counters,
+    /// The counts as one number, for comparing: nominal ns for a second of one ball.
+    pub work: f64,
+    /// By the clock, if it was looked at.
+    pub cost: Option<Cost>,
+}
+
+impl Measurement {
+    /// The method as a scene asks for it; none for the variants of the slides.
+    pub fn method(&self) -> Option<Method> {
+        match self.variant.with(self.value) {
+            Approach::Method(method) => Some(method),
+            Approach::Textbook(_) => None,
+        }
+    }
+}
+
+/// A method over its sweep.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sweep {
+    /// The method.
+    pub variant: Variant,
+    /// From coarse to fine.
+    pub measurements: Vec<Measurement>,
+    /// The order of the error before the first impact.
+    pub flight_order: Order,
+    /// The order of the error over all.
+    pub order: Order,
+}
+
+/// What a user should know before reading the numbers.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Remark {
+    /// Only the first balls were followed.
+    SomeBalls {
+        /// How many.
+        followed: usize,
+        /// Of how many.
+        of: usize,
+    },
+    /// No ball hits anything: nothing of the determination is measured, and no order is fitted.
+    NoImpacts,
+    /// Nothing can be compared: no sample lies before the time up to which the reference can be compared.
+    NothingToCompare,
+    /// Small differences have grown a thousandfold: positions are compared up to there, and no order is fitted if that is before the first
+    /// bounces.
+    Chaotic {
+        /// The ball.
+        ball: usize,
+        /// Since when, in s.
+        from: f64,
+    },
+    /// The reference ends before the scene does.
+    ReferenceEnds {
+        /// The ball.
+        ball: usize,
+        /// When, in s.
+        at: f64,
+        /// Why.
+        reach: Reach,
+    },
+    /// The exact flight is not offered, because something other than gravity acts.
+    NoExactFlight,
+    /// A method whose flights are exact under gravity alone.
+    ExactFlights(Variant),
+    /// A bounce lowers the order.
+    LoweredByBounces {
+        /// Of which method.
+        variant: Variant,
+        /// In flight.
+        flight: f64,
+        /// Over all.
+        order: f64,
+    },
+    /// Runs in which a ball went through a surface or left the scene's impacts behind.
+    Through {
+        /// Of which method.
+        variant: Variant,
+        /// In how many of its runs.
+        runs: usize,
+    },
+}
+
+impl fmt::Display for Remark {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::SomeBalls { followed, of } => write!(f, "the first {followed} of {of} balls are measured"),
+            Self::NoImpacts => f.write_str(
+                "no ball hits anything: this says nothing of collisions, the errors are those of the flights, and no order is fitted",
+            ),
+            Self::NothingToCompare => f.write_str("there is nothing to compare: no error is given, and no order is fitted"),
+            Self::Chaotic { ball, from } => write!(
+                f,
+                "ball {ball}: from {from:.4} s on small differences have grown more than a thousandfold; positions are compared up to there, and \
+                 energy, impacts and places at the end stand for the rest"
+            ),
+            Self::ReferenceEnds { ball, at, reach } => {
+                let why = match reach {
+                    Reach::Complete => "at the end of the scene",
+                    Reach::Sliding => "the ball slides where that has no closed form",
+                    Reach::Simultaneous => "the ball touches several surfaces at once",
+                    Reach::Undecided => "a touch cannot be told from a miss",
+                    Reach::Budget => "the ball bounces more often than is followed",
+                };
+                write!(f, "ball {ball}: the reference ends at {at:.4} s: {why}; so does the comparison")
+            }
+            Self::NoExactFlight => f.write_str("`exact` is not offered: something other than uniform gravity acts"),
+            Self::ExactFlights(variant) => write!(
+                f,
+                "{}: a parabola has no error of integration, at any step; no order can be fitted to rounding",
+                variant.name()
+            ),
+            Self::LoweredByBounces { variant, flight, order } => write!(
+                f,
+                "{}: order {flight:.2} in flight, {order:.2} with its bounces: {}",
+                variant.name(),
+                match variant {
+                    Variant::Rk4LinearF => "f = d0 / (d0 - d1) is off by O(h^2) on a curved path, whatever the flight is worth",
+                    Variant::Adaptive => "the step after a bounce begins anew, with the length that was right before it",
+                    _ => "the errors of several flights and impacts add up, and none of them is in its limit yet",
+                }
+            ),
+            Self::Through { variant, runs } => {
+                write!(f, "{}: in {runs} of its runs a ball passes through a surface", variant.name())
+            }
+        }
+    }
+}
+
+/// The measurement of a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Report {
+    /// What the methods are compared with.
+    pub reference: ReferenceKind,
+    /// What rounding makes of the reference itself, at worst, in m.
+    pub reference_error: f64,
+    /// Balls measured.
+    pub balls: usize,
+    /// Up to when positions are compared, in s, for the first ball that ends the comparison.
+    pub until: f64,
+    /// How many times a small difference grows up to there, at worst.
+    pub growth: f64,
+    /// Impacts of the reference up to there, of all balls.
+    pub impacts: usize,
+    /// Where the balls are at the end by the reference, if it gets there with all of them.
+    pub ends: Option<Ends>,
+    /// The methods.
+    pub sweeps: Vec<Sweep>,
+    /// What else there is to know.
+    pub remarks: Vec<Remark>,
+}
+
+impl Report {
+    /// All measurements.
+    pub fn measurements(&self) -> impl Iterator<Item = &Measurement> {
+        self.sweeps.iter().flat_map(|sweep| &sweep.measurements)
+    }
+
+    /// The measurements that no other beats in both error and work, from cheap to dear; the cheapest first.
+    pub fn front(&self) -> Vec<&Measurement> {
+        let mut all: Vec<&Measurement> = self.measurements().filter(|m| m.errors.position.is_finite()).collect();
+        let error = |m: &Measurement| m.errors.position;
+        all.sort_by(|a, b| a.work.total_cmp(&b.work).then(error(a).total_cmp(&error(b))));
+        let mut front: Vec<&Measurement> = Vec::new();
+        for m in all {
+            if front.last().is_none_or(|best| error(m) < error(best)) {
+                front.push(m);
+            }
+        }
+        front
+    }
+
+    /// The cheapest measurement of a method that a scene can ask for whose positions are right to `tolerance` (m); none if none is. Cheap is
+    /// what takes little work by its counts, so that the answer is the same on every machine.
+    pub fn cheapest(&self, tolerance: f64) -> Option<&Measurement> {
+        let good = self.measurements().filter(|m| m.method().is_some() && m.errors.position <= tolerance);
+        good.min_by(|a, b| a.work.total_cmp(&b.work))
+    }
+}
+
+/// What the counts of a run amount to, in nominal ns.
+///
+/// The weights are rounded times of one evaluation on a machine of 2023; they rank runs, and the clock says what these cost.
+pub fn work(counters: &Counters) -> f64 {
+    let weights = [
+        (counters.paths, 30.0),
+        (counters.clearances, 8.0),
+        (counters.nodes, 10.0),
+        (counters.triangles, 20.0),
+        (counters.rounds, 60.0),
+        (counters.accelerations, 2.0),
+        (counters.drag, 6.0),
+        (counters.impacts, 40.0),
+        (counters.rest, 10.0),
+    ];
+    weights.iter().map(|(count, weight)| *count as f64 * weight).sum()
+}
