@@ -170,7 +170,7 @@ mod tests {
             let up = Unit::new_normalize(up);
             // What is taken for the origin is turned like every point.
             let (rotation, turned) = upright(&up, &(3.0 * up.into_inner()));
-            assert!((Vector3::from(turned) - 3.0 * Vector3::y()).norm() < 1e-12, "{up:?}: {turned:?}");
+            assert!((Vector3::<f64>::from(turned) - 3.0 * Vector3::<f64>::y()).norm() < 1e-12, "{up:?}: {turned:?}");
             assert!((rotation.iter().map(|x| x * x).sum::<f64>() - 1.0).abs() < 1e-12);
         }
     }
