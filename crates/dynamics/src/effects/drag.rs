@@ -102,7 +102,7 @@ impl Drag {
 
     /// The density of the air in kg/m^3, if the law names it.
     pub fn density(&self) -> Option<f64> {
-        match self.law {
+        match self.law() {
             Law::Linear(_) => None,
             Law::Quadratic { density, .. } | Law::OfBall(density) | Law::Sphere { density, .. } => Some(density),
         }
