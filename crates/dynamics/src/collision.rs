@@ -9,6 +9,7 @@ use crate::tolerance::{merge_angle_squared, rate_rounding, touch_distance};
 use arrayvec::ArrayVec;
 use carom_geometry::clearance::{Clearance, Entry};
 use carom_geometry::contact::{Hold, MovingBall};
+use carom_geometry::mesh::Fold;
 use carom_geometry::plane::Side;
 use carom_geometry::rounding::contact_doubt;
 use carom_geometry::site::{Bend, RegionBound, Site};
@@ -46,12 +47,18 @@ pub type Returns = ArrayVec<Return, MAX_CONTACTS>;
 /// does not begin with the velocity adds).
 fn leaving(step: &Step, contact: &Contact) -> Clearance {
     let mut c = [0.0; 5];
+    // What the ball moves along, it leaves or enters by more than rounding or not at all.
+    let along = contact.rate == 0.0;
+    let part = |v: &Vector3<f64>, of: f64| {
+        let part = contact.normal.dot(v);
+        if along && part.abs() <= rate_rounding(of) { 0.0 } else { part }
+    };
     for (k, term) in step.path.terms().iter().enumerate() {
-        c[k + 1] = contact.normal.dot(term);
+        c[k + 1] = part(term, term.norm());
     }
     if let Some(first) = step.path.terms().first() {
         let kick = first - step.velocity[0] * step.seconds;
-        c[1] = contact.rate * step.seconds + contact.normal.dot(&kick);
+        c[1] = contact.rate * step.seconds + part(&kick, first.norm());
     }
     Clearance::new(c)
 }
@@ -315,6 +322,14 @@ impl<'a> Obstacles<'a> {
             }
             _ => false,
         }
+    }
+
+    /// Whether the fold at `edge` of `face` is hollow on the side that `contact` is on.
+    pub fn is_hollow(&self, contact: &Contact, face: u32, edge: u8) -> bool {
+        let Some(mesh) = self.mesh(contact.surface) else { return false };
+        let fold = mesh.fold(face, edge.into());
+        let in_front = mesh.normal(face).is_some_and(|n| n.dot(&contact.normal) > 0.0);
+        (if in_front { fold } else { fold.from_back() }) == Fold::Concave
     }
 
     /// The mesh that `surface` is, if it is one.
