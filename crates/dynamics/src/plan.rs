@@ -33,6 +33,8 @@ pub struct Plan {
     flows: Vec<Arc<dyn Flow>>,
     spinning_flows: Vec<Arc<dyn Flow>>,
     spin_decay: Option<SpinDecay>,
+    /// Whether a surface turns the balls.
+    grips: bool,
     pub(crate) planes: Vec<(usize, Plane)>,
     pub(crate) meshes: Vec<(usize, Arc<Mesh>)>,
     pub(crate) surfaces: Vec<PlannedSurface>,
@@ -66,7 +68,11 @@ impl Plan {
         if scene.balls.is_empty() {
             return Err(SceneError::NoBalls);
         }
-        let spins = scene.balls.iter().any(|ball| ball.spin() != Vector3::zeros());
+        let grips = scene.grips();
+        if grips && let Some(ball) = scene.balls.iter().position(|ball| ball.radius() == 0.0) {
+            return Err(SceneError::RadiusMissing { ball, effect: "grip" });
+        }
+        let spins = scene.spins();
         let mut flows: Vec<Arc<dyn Flow>> = Vec::new();
         if let Some(drag) = scene.drag.filter(|drag| !drag.is_none()) {
             flows.push(Arc::new(drag));
@@ -119,6 +125,7 @@ impl Plan {
             flows,
             spinning_flows,
             spin_decay: scene.spin_decay.filter(|_| spins),
+            grips,
             planes,
             meshes,
             surfaces: surfaces.collect(),
@@ -168,11 +175,16 @@ impl Plan {
         Some(self.meshes.iter().fold(Aabb::empty(), |sum, (_, mesh)| sum.union(mesh.bounds())))
     }
 
+    /// Whether the spin of `ball` is followed: it has some, or a surface may give it some.
+    pub fn spins(&self, ball: &Ball) -> bool {
+        self.grips || ball.spin() != Vector3::zeros()
+    }
+
     pub(crate) fn forces<'a>(&'a self, ball: &'a Ball) -> Forces<'a> {
         // Without a mass nothing asks for it: the plan has seen to that.
         let mass = ball.mass().unwrap_or(f64::INFINITY);
         let inertia = self.buoyancy.map_or(mass, |buoyancy| buoyancy.inertia(ball, mass));
-        let spins = ball.spin() != Vector3::zeros();
+        let spins = self.spins(ball);
         Forces {
             constant: self.constant_acceleration(ball),
             flows: if spins { &self.spinning_flows } else { &self.flows },

@@ -31,8 +31,8 @@ impl Recording {
         let events = args.events.as_deref().map(Format::of).transpose()?;
         let frames = args.frames.as_deref().map(Format::of).transpose()?;
         Ok(Self {
-            events: events.map(|format| EventRows::new(format, &scene.surfaces)),
-            frames: frames.map(FrameRows::new),
+            events: events.map(|format| EventRows::new(format, scene)),
+            frames: frames.map(|format| FrameRows::new(format, scene)),
             fps: args.fps,
             duration: scene.duration,
         })
@@ -83,7 +83,7 @@ impl Observer for FrameRecorder<'_> {
         self.sampler.segment(segment);
         let frames = self.sampler.frames();
         for frame in &frames[self.written..] {
-            self.table.push(&mut self.rows, self.ball, frame.time, &frame.state, frame.motion);
+            self.table.push(&mut self.rows, self.ball, frame);
         }
         self.written = frames.len();
     }

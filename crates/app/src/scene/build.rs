@@ -2,14 +2,15 @@
 
 use super::air::Air;
 use super::file::{
-    FallingTable, FrictionTable, Integrator, MaterialTable, MethodTable, RestTable, RestitutionOf, RestitutionTable,
-    SceneFile,
+    FallingTable, FrictionTable, GripTable, Integrator, MaterialTable, MethodTable, RestTable, RestitutionOf,
+    RestitutionTable, SceneFile,
 };
 use super::problem::Problem;
 use super::shapes;
 use super::tree::{Node, Step};
 use carom_dynamics::effects::friction::Friction;
 use carom_dynamics::effects::gravity::Gravity;
+use carom_dynamics::effects::grip::Grip;
 use carom_dynamics::effects::restitution::Restitution;
 use carom_dynamics::error::ValueError;
 use carom_dynamics::scene::{Method, Scene};
@@ -21,6 +22,14 @@ use std::path::Path;
 
 /// The version of the scene format.
 pub const VERSION: u64 = 1;
+
+/// What of a grip a message names, and its key.
+const GRIP_KEYS: [(&str, &str); 3] = [("grip", "mu"), ("tangential", "tangential"), ("rolling", "rolling")];
+
+fn grip(table: GripTable) -> Result<Friction, ValueError> {
+    let grip = Grip::new(table.mu)?.with_tangential(table.tangential)?.with_rolling(table.rolling)?;
+    Ok(Friction::Grip(grip))
+}
 
 /// Where in the file something is.
 macro_rules! at {
@@ -80,8 +89,13 @@ impl Builder<'_> {
                 Some(FrictionTable::Linear(c_f)) => ("linear", Friction::linear(c_f)),
                 Some(FrictionTable::Coulomb(mu)) => ("coulomb", Friction::coulomb(mu)),
                 Some(FrictionTable::Impulse(mu)) => ("impulse", Friction::impulse(mu)),
+                Some(FrictionTable::Grip(table)) => ("grip", grip(table)),
             };
-            let friction = self.accept(at!["materials", name, "friction", law], friction);
+            let key = friction.err().and_then(|e| GRIP_KEYS.into_iter().find(|(word, _)| e.name.contains(word)));
+            let friction = match key {
+                Some((_, key)) => self.accept(at!["materials", name, "friction", law, key], friction),
+                None => self.accept(at!["materials", name, "friction", law], friction),
+            };
             let material = restitution.zip(friction);
             let material = material.map(|(restitution, friction)| Material { restitution, friction });
             materials.insert(name.to_owned(), material);

@@ -152,6 +152,22 @@ pub enum FrictionTable {
     Coulomb(f64),
     /// mu, the impulse law: the tangential speed falls by up to mu (1 + c_r) times the closing speed.
     Impulse(f64),
+    /// The impulse law at the point of contact, which turns the ball: { mu, tangential, rolling }.
+    Grip(GripTable),
+}
+
+/// Friction that turns the ball.
+#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a table such as { mu = 0.6 }")]
+pub struct GripTable {
+    /// mu, the coefficient of friction.
+    pub mu: f64,
+    /// e_x, the tangential restitution where the surface grips, from -1 to 1: at 0 the ball leaves rolling.
+    #[serde(default)]
+    pub tangential: f64,
+    /// c_rr, the rolling resistance: on a slope up to c_rr the ball does not roll.
+    #[serde(default)]
+    pub rolling: f64,
 }
 
 /// A fixed surface.

@@ -158,6 +158,7 @@ impl Loaded {
                     "give it a name that the program knows, such as ball = \"tennis\", or `drag` and `restitution`";
                 return self.refuse_ball(*ball, None, problem.help(help));
             }
+            SceneError::RadiusMissing { ball, .. } => return self.refuse_ball(*ball, None, problem),
             SceneError::RadiusBelowResolution { ball, .. } => return self.refuse_ball(*ball, Some("radius"), problem),
             SceneError::Ball { ball, source } => return self.refuse_ball(*ball, Some(source.name), problem),
             SceneError::Value(value) => path.push(Step::Key(value.name)),

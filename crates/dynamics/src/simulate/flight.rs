@@ -117,6 +117,9 @@ impl<O: Observer> Walk<'_, O> {
             } else {
                 respond(velocity_in, &mut contacts, &materials, &mut self.counters)
             };
+            if self.spins && !collapses {
+                self.grip(velocity_in, &mut contacts, &closing, &materials);
+            }
             self.counters.impacts += 1;
             self.halvings = 0;
             for (contact, _) in contacts.iter().zip(&closing).filter(|(_, closing)| **closing) {

@@ -2,7 +2,7 @@
 
 use super::{Settling, Walk};
 use crate::contacts::{Contact, MAX_CONTACTS};
-use crate::effects::friction::ContactFriction;
+use crate::effects::friction::{ContactFriction, Friction};
 use crate::events::Motion;
 use crate::integrators::exact;
 use crate::observer::Observer;
@@ -180,7 +180,10 @@ impl<O: Observer> Walk<'_, O> {
             let material = &self.surfaces[contact.surface].material;
             let c_r = material.restitution.coefficient();
             let before = self.state.velocity;
-            self.state.velocity = material.friction.slow_to_the_end(before, settling.closing, c_r);
+            match material.friction {
+                Friction::Grip(grip) => self.grip_to_the_end(&contact, &grip, settling.closing, c_r),
+                _ => self.state.velocity = material.friction.slow_to_the_end(before, settling.closing, c_r),
+            }
             self.begin_sliding(before);
         }
     }
