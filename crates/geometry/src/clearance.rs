@@ -56,11 +56,13 @@ impl Clearance {
     }
 
     /// c(f).
+    #[inline]
     pub fn at(&self, f: f64) -> f64 {
         self.c.iter().rev().fold(0.0, |sum, c| sum * f + c)
     }
 
     /// dc/df at `f`.
+    #[inline]
     pub fn rate(&self, f: f64) -> f64 {
         let [_, c1, c2, c3, c4] = self.c;
         ((4.0 * c4 * f + 3.0 * c3) * f + 2.0 * c2) * f + c1
@@ -77,6 +79,7 @@ impl Clearance {
     /// Lines and parabolas are solved in closed form, to a few units of roundoff; higher degrees to the last bit of f that
     /// the rounded coefficients determine, on the early side. A parabola that touches 0 from above without crossing is
     /// reported as a touch (`rate` 0).
+    #[inline]
     pub fn first_entry(&self, from: f64, to: f64) -> Entry {
         if from > to {
             return Entry::Never;

@@ -92,6 +92,10 @@ pub(crate) fn vector_area_bound(magnitude: f64, fans: usize) -> f64 {
 /// A plain cross product loses u / sine of its length: below 2^-6 that is more than 64 u.
 pub(crate) const NEEDLE_SINE_SQUARED: f64 = 1.0 / 4096.0;
 
+/// The square of the sine of an angle, 2^-200, above which a triangle has a normal at every scale of f64: |n|^2, of the order of its size to
+/// the fourth, is then a normal number if the size is at least 2^-200.
+pub(crate) const LEAST_SINE_SQUARED: f64 = f64::from_bits((1023 - 200) << 52);
+
 /// How far the f of [`segment_hits_triangle`](crate::segment::segment_hits_triangle) may be below the exact one: 256 u.
 ///
 /// A design choice: a smaller one sends more segments to rationals. Two determinants of a well-shaped query are off by some 7 u of
@@ -166,6 +170,12 @@ pub fn contact_bound(extent: f64) -> f64 {
 /// is for the rounding of f.
 pub fn contact_doubt(extent: f64) -> f64 {
     5.0 * contact_bound(extent)
+}
+
+/// The distance between ball and triangle that is no contact, not even in doubt, as computed from planes with their normals scaled or
+/// not: [`contact_doubt`], and as much again as [`contact_bound`] allows the evaluation, threefold.
+pub(crate) fn screen_bound(extent: f64) -> f64 {
+    contact_doubt(extent) + 3.0 * contact_bound(extent)
 }
 
 /// How far a point at `distance` from a plane's own may seem to stand out of the plane, as computed from its unit normal.
