@@ -61,6 +61,12 @@ pub enum Command {
     /// is examined for degenerate and duplicate faces, non-manifold and open edges, inconsistent winding and the like,
     /// each with its face numbers, which count from 0. Exit code 3 if there is an error; warnings alone are 0.
     Check(CheckArgs),
+    /// Compare the events of any engine with expected ones
+    ///
+    /// EXPECTED is a CSV file of targets (the folder `conformance` has some, and tells the format), ACTUAL one of events as `run` writes
+    /// it: the columns t, ball and kind, and any of x, y, z, vx, vy, vz. The n-th event of a kind is compared with the n-th; impacts of a
+    /// ball at one time are one. Prints the worst deviations; exit code 5 if one is above its tolerance or an event is missing.
+    Compare(CompareArgs),
     /// Print the JSON schema of scene files, for editors
     Schema,
     /// Print tables of restitution and friction, with their sources
@@ -221,6 +227,23 @@ pub struct CheckArgs {
     pub file: PathBuf,
 }
 
+/// What `compare` takes.
+#[derive(Debug, Args)]
+#[command(after_help = "Example:
+  carom run conformance/scenes/corner.toml --events corner.csv
+  carom compare conformance/expected/corner.csv corner.csv")]
+pub struct CompareArgs {
+    /// The targets: a .csv file with their tolerances
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub expected: PathBuf,
+    /// The events: a .csv file
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub actual: PathBuf,
+    /// Multiply every tolerance by FACTOR, for engines of less precision
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = factor)]
+    pub loosen: f64,
+}
+
 /// What `materials` takes.
 #[derive(Debug, Args)]
 pub struct MaterialsArgs {
@@ -253,4 +276,12 @@ fn frames_per_second(word: &str) -> Result<f64, String> {
         None => number(word)?,
     };
     if fps.is_finite() && fps > 0.0 { Ok(fps) } else { Err("frames per second must be finite and > 0".to_owned()) }
+}
+
+/// Reads a factor, finite and above 0.
+fn factor(word: &str) -> Result<f64, String> {
+    match word.parse::<f64>() {
+        Ok(x) if x.is_finite() && x > 0.0 => Ok(x),
+        _ => Err("a factor is a finite number > 0".to_owned()),
+    }
 }

@@ -7,6 +7,7 @@ mod cli;
 mod commands;
 mod curves;
 mod error;
+mod events_file;
 mod mesh_file;
 mod model;
 mod output;
@@ -36,6 +37,7 @@ pub fn main() -> ExitCode {
         Command::Plot(args) => commands::plot::plot(args),
         Command::Export(args) => commands::export::export(args),
         Command::Check(args) => commands::check::check(args),
+        Command::Compare(args) => commands::compare::compare(args),
         Command::Schema => commands::schema::schema(),
         Command::Materials(args) => commands::materials::materials(args),
         Command::Completions(args) => commands::completions::completions(args),

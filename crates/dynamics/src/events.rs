@@ -10,7 +10,7 @@ use nalgebra::{Point3, Vector3};
 pub enum EventKind {
     /// The ball hit a surface and was answered.
     Impact,
-    /// Bouncing has ended, sliding begins.
+    /// Bouncing has ended, sliding begins; what friction took in the last hops, it took between `velocity_in` and `velocity`.
     Slide,
     /// The ball came to rest.
     Rest,

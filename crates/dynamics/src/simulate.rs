@@ -10,6 +10,7 @@
 
 mod flight;
 mod lasting;
+mod settling;
 
 use crate::body::{Ball, State};
 use crate::clock::Clock;
@@ -22,7 +23,9 @@ use crate::integrators::adaptive::Adaptive;
 use crate::integrators::{Integrator, Step};
 use crate::observer::{Observer, Segment};
 use crate::plan::Plan;
-use crate::tolerance::{EVENT_BUDGET, FARTHEST, MAX_STANDSTILL, SLIDING_TOLERANCE, STEP_BUDGET, time_resolution};
+use crate::tolerance::{
+    EVENT_BUDGET, FARTHEST, MAX_STANDSTILL, ROLLING_TOLERANCE, SLIDING_TOLERANCE, STEP_BUDGET, time_resolution,
+};
 use nalgebra::Vector3;
 
 /// Simulates one ball of `plan` to the end and shows it to `observer`.
@@ -42,9 +45,11 @@ pub fn simulate(plan: &Plan, ball: &Ball, observer: &mut impl Observer) -> Outco
         motion: Motion::Flying,
         settling: None,
         slider: Adaptive::new(SLIDING_TOLERANCE),
+        roller: Adaptive::new(ROLLING_TOLERANCE),
         standstill: 0,
         answered: Contacts::new(),
         moved: 0.0,
+        low_hops: 0,
         halvings: 0,
         events: 0,
         ending: None,
@@ -93,14 +98,18 @@ struct Walk<'a, O> {
     contacts: Contacts,
     motion: Motion,
     settling: Option<Settling>,
-    /// Integrates what slides on no straight line.
+    /// Integrates what slides on planes on no straight line.
     slider: Adaptive,
+    /// Integrates what slides around edges and vertices.
+    roller: Adaptive,
     /// Answers in a row that took no time to speak of.
     standstill: u32,
     /// What has been touched since time last passed.
     answered: Contacts,
     /// Since when, in s.
     moved: f64,
+    /// Impacts in a row after which no hop was high.
+    low_hops: u32,
     /// How often the timestep is halved because the path closes where the ball does not.
     halvings: u32,
     events: u64,

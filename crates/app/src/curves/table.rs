@@ -58,7 +58,7 @@ pub fn read(path: &Path) -> Result<Vec<Curve>, AppError> {
     };
     let text = std::fs::read_to_string(path).map_err(|source| AppError::Read { path: shown.clone(), source })?;
     let rows = if is_json { json_rows(&text) } else { csv_rows(&text) };
-    let rows = rows.map_err(|(line, message)| AppError::Table { path: shown, line, message })?;
+    let rows = rows.map_err(|(line, message)| AppError::Events { path: shown, line, message })?;
     let mut balls: BTreeMap<usize, Vec<Row>> = BTreeMap::new();
     rows.into_iter().for_each(|row| balls.entry(row.ball).or_default().push(row));
     Ok(balls.into_iter().map(|(ball, rows)| curve(ball, rows)).collect())

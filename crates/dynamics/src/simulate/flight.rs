@@ -86,7 +86,7 @@ impl<O: Observer> Walk<'_, O> {
             self.correct(contact, tolerance);
         }
         self.contacts = contacts;
-        self.settle();
+        self.settle(None);
     }
 
     /// At a collision: what is touched, how fast, and the answer.
@@ -128,7 +128,7 @@ impl<O: Observer> Walk<'_, O> {
         }
         self.contacts = contacts;
         let answered = closing.contains(&true);
-        let carried = self.settle();
+        let carried = self.settle(before.iter().find(|b| b.lasting).copied());
         if !answered && !carried && (hit.f == 0.0 || !step.exact) {
             // The path closes where the ball does not: the hop is too short for this step.
             self.halvings += 1;
