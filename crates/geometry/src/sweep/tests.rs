@@ -10,7 +10,7 @@ fn mesh(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Mesh {
 }
 
 fn touches(m: &Mesh, centre: [f64; 3], radius: f64) -> Vec<Touch> {
-    m.touches(&centre.into(), &Vector3::zeros(), radius, TOLERANCE, &mut Work::default())
+    m.touches(&centre.into(), &Vector3::zeros(), radius, TOLERANCE, &mut Work::default()).into_vec()
 }
 
 fn sites(m: &Mesh, centre: [f64; 3], radius: f64) -> Vec<Site> {
