@@ -1,6 +1,7 @@
 //! Scene files: TOML or JSON into a scene, every fault with its place.
 
 mod air;
+mod balls;
 mod build;
 mod choices;
 mod de;
@@ -10,7 +11,7 @@ pub mod problem;
 mod shapes;
 mod tree;
 
-use crate::balls::{self, BallList};
+use crate::balls::{self as ball_lists, BallList};
 use crate::error::AppError;
 use carom_dynamics::error::SceneError;
 use carom_dynamics::scene::Scene;
@@ -113,7 +114,7 @@ pub fn load(path: &Path, balls: Option<&Path>) -> Result<Loaded, AppError> {
     }
     let mut origin = BallOrigin::Tables(tables);
     if let Some(list) = balls {
-        let list = balls::read(list)?;
+        let list = ball_lists::read(list)?;
         scene.balls = list.balls.clone();
         origin = BallOrigin::List(list);
     }
@@ -152,6 +153,12 @@ impl Loaded {
             }
             SceneError::NoExactFlight { .. } => path.extend([Step::Key("method"), Step::Key("integrator")]),
             SceneError::MassMissing { ball, .. } => return self.refuse_ball(*ball, None, problem),
+            SceneError::OwnMissing { ball, .. } => {
+                let help =
+                    "give it a name that the program knows, such as ball = \"tennis\", or `drag` and `restitution`";
+                return self.refuse_ball(*ball, None, problem.help(help));
+            }
+            SceneError::RadiusMissing { ball, .. } => return self.refuse_ball(*ball, None, problem),
             SceneError::RadiusBelowResolution { ball, .. } => return self.refuse_ball(*ball, Some("radius"), problem),
             SceneError::Ball { ball, source } => return self.refuse_ball(*ball, Some(source.name), problem),
             SceneError::Value(value) => path.push(Step::Key(value.name)),

@@ -5,6 +5,7 @@ pub mod buoyancy;
 pub mod drag;
 pub mod friction;
 pub mod gravity;
+pub mod grip;
 pub mod magnus;
 pub mod restitution;
 pub mod spin_decay;
