@@ -3,6 +3,7 @@
 pub mod catalogue;
 pub mod checker;
 pub mod closed;
+pub mod conformance;
 pub mod data;
 pub mod exact;
 pub mod grid;

@@ -50,4 +50,6 @@ pub mod mesh;
 pub mod doctor;
 pub mod site;
 pub mod contact;
+mod screen;
 pub mod sweep;
+pub mod pierce;

@@ -16,9 +16,14 @@ const EVENT_COLUMNS: [&str; 20] = [
 /// The last three only for scenes in which balls turn.
 const FRAME_COLUMNS: [&str; 12] = ["t", "ball", "x", "y", "z", "vx", "vy", "vz", "state", "wx", "wy", "wz"];
 
-/// The columns of a table, without those of spin where there is none.
-fn columns(all: &'static [&'static str], spins: bool) -> &'static [&'static str] {
-    if spins { all } else { &all[..all.len() - 3] }
+/// The columns of a table of events, without those of spin where there is none.
+pub fn event_columns(scene: &Scene) -> &'static [&'static str] {
+    &EVENT_COLUMNS[..EVENT_COLUMNS.len() - if scene.spins() { 0 } else { 3 }]
+}
+
+/// The columns of a table of frames, without those of spin where there is none.
+pub fn frame_columns(scene: &Scene) -> &'static [&'static str] {
+    &FRAME_COLUMNS[..FRAME_COLUMNS.len() - if scene.spins() { 0 } else { 3 }]
 }
 
 /// Writes events.
@@ -33,7 +38,7 @@ impl EventRows {
     /// For a scene.
     pub fn new(format: Format, scene: &Scene) -> Self {
         let surfaces = scene.surfaces.iter().map(|s| quoted(&s.name, format)).collect();
-        Self { format, surfaces, columns: columns(&EVENT_COLUMNS, scene.spins()) }
+        Self { format, surfaces, columns: event_columns(scene) }
     }
 
     /// What comes before the first row.
@@ -67,7 +72,7 @@ pub struct FrameRows {
 impl FrameRows {
     /// For a scene.
     pub fn new(format: Format, scene: &Scene) -> Self {
-        Self { format, columns: columns(&FRAME_COLUMNS, scene.spins()) }
+        Self { format, columns: frame_columns(scene) }
     }
 
     /// What comes before the first row.

@@ -4,6 +4,8 @@ mod balls;
 mod bad_input;
 mod commands;
 mod common;
+mod compare;
 mod explain;
+mod first_steps;
 mod run;
 mod scenes;

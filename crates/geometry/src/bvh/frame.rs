@@ -1,7 +1,7 @@
 //! The tree's own coordinates, and queries in them with room for every rounding.
 
 use super::{FatSegment, WIDTH};
-use crate::bounds::Aabb;
+use crate::bounds::{Aabb, largest, least};
 use crate::rounding::{UNIT_ROUNDOFF, gamma, segment_bound, segment_bound_f32};
 
 /// A margin beyond this is so much larger than the tree, which has a half extent of 1, that no box can be told apart.
@@ -69,15 +69,17 @@ impl Frame {
         if !(from.coords.iter().chain(&to.coords).all(|c| c.is_finite()) && radius.is_finite()) {
             return (!bounds.is_empty()).then_some(all);
         }
-        if !bounds.intersects(&Aabb::of_points([from, to]).inflate(radius.max(0.0))) {
-            return None;
-        }
         let (a, b) = (self.local(from), self.local(to));
-        let reach = a.iter().chain(&b).fold(0.0, |m: f64, c| m.max(c.abs()));
+        let reach = a.iter().chain(&b).fold(0.0, |m: f64, c| largest(m, c.abs()));
         let radius = radius.max(0.0) * self.scale + segment_bound(reach);
         // Also true where `reach` or the radius is no longer finite.
         if !(radius <= HOPELESS && reach <= HOPELESS / UNIT_ROUNDOFF) {
             return Some(all);
+        }
+        // Boxes of the tree lie within NEAR at every scale.
+        let off = |i: usize| least(a[i], b[i]) - radius > NEAR || largest(a[i], b[i]) + radius < -NEAR;
+        if off(0) || off(1) || off(2) {
+            return None;
         }
         let d = [0, 1, 2].map(|i| b[i] - a[i]);
         if reach <= NEAR {
@@ -121,7 +123,7 @@ fn clip(a: &[f64; 3], d: &[f64; 3], bound: f64) -> Option<(f64, f64)> {
 impl LocalSegment {
     /// From `a` at s = `start` to `b` at s = `end`.
     fn new(start: f64, end: f64, a: [f64; 3], b: [f64; 3], radius: f64) -> Self {
-        let reach = a.iter().chain(&b).fold(0.0, |m: f64, c| m.max(c.abs()));
+        let reach = a.iter().chain(&b).fold(0.0, |m: f64, c| largest(m, c.abs()));
         let radius = round_up(radius + segment_bound_f32(reach, radius));
         let (a, b) = (a.map(|c| c as f32), b.map(|c| c as f32));
         let step = [0, 1, 2].map(|i| b[i] - a[i]);
@@ -151,11 +153,11 @@ impl LocalSegment {
                 exit[j] = if w < exit[j] { w } else { exit[j] };
             }
         }
-        let mut met = 0;
+        let mut bits = [0_u32; WIDTH];
         for j in 0..WIDTH {
-            met |= u32::from(entry[j] <= exit[j]) << j;
+            bits[j] = if entry[j] <= exit[j] { 1 << j } else { 0 };
         }
-        (entry, met)
+        (entry, bits.iter().fold(0, |met, bit| met | bit))
     }
 
     /// The caller's limit of s as one of this part, rounded up.

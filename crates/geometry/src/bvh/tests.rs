@@ -236,3 +236,51 @@ fn memory_is_below_forty_bytes_an_item() {
     let per_item = Bvh::build(&boxes).bytes() as f64 / boxes.len() as f64;
     assert!(per_item < 40.0, "{per_item}");
 }
+
+#[test]
+fn what_lies_in_a_row_is_shown_front_to_back() {
+    let boxes: Vec<_> = (0..64)
+        .map(|k| boxed(&[Point3::new(f64::from(k), 0.0, 0.0), Point3::new(f64::from(k) + 0.5, 1.0, 1.0)]))
+        .collect();
+    let tree = Bvh::build(&boxes);
+    let (left, right) = (Point3::new(-9.0, 0.5, 0.5), Point3::new(99.0, 0.5, 0.5));
+    let shown = |from, to| {
+        let mut shown = Vec::new();
+        tree.visit(&FatSegment { from, to, radius: 0.0 }, |item| {
+            shown.push(item as i32);
+            f64::INFINITY
+        });
+        shown
+    };
+    // To within the four items of a leaf.
+    let disorder = |shown: Vec<i32>| shown.iter().zip(0..).map(|(item, k)| (item - k).abs()).max();
+    assert!(disorder(shown(left, right)) < Some(4));
+    assert!(disorder(shown(right, left).into_iter().map(|item| 63 - item).collect()) < Some(4));
+    let mut first = Vec::new();
+    let work = tree.visit(&FatSegment { from: left, to: right, radius: 0.0 }, |item| {
+        first.push(item);
+        9.25 / 108.0
+    });
+    assert!(first.len() <= 4 && work <= 2, "beyond the limit nothing is looked at: {first:?}, {work} nodes");
+}
+
+#[test]
+fn a_box_finds_little_that_it_does_not_meet() {
+    let boxes = terrain(16);
+    let tree = Bvh::build(&boxes);
+    let mut met = Vec::new();
+    let visited = tree.visit_box(&boxes[100], |item| met.push(item));
+    let touching = boxes.iter().filter(|b| b.intersects(&boxes[100])).count();
+    assert!(met.len() <= touching + 4 && (2..16).contains(&visited), "{} for {touching}, {visited} nodes", met.len());
+}
+
+#[test]
+fn a_tree_says_how_much_it_holds() {
+    let one = boxed(&[Point3::origin()]);
+    for n in 1..4 {
+        let tree = Bvh::build(&vec![one; n]);
+        assert_eq!((tree.len(), tree.is_empty()), (n, false));
+        assert_eq!(tree.bytes(), 7 * 8 * 4 + 4 * n, "six planes and a child, eight of each, and the items");
+    }
+    assert_eq!((Bvh::build(&[]).len(), Bvh::build(&[]).bytes()), (0, 0));
+}

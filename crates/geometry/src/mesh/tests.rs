@@ -144,6 +144,10 @@ fn edges_and_used_vertices_have_one_owner_each() {
         keys.sort_unstable();
         keys.dedup();
         assert_eq!(owned_edges, keys.len());
+        for (f, i) in places.clone() {
+            let (face, side) = m.edge(f, i).owner;
+            assert!(m.owns_edge(face, side) && m.edge(face, side) == m.edge(f, i));
+        }
         let owned_vertices = places.filter(|&(f, i)| m.owns_vertex(f, i)).count();
         assert_eq!(owned_vertices, m.vertices().len());
     }
@@ -245,4 +249,29 @@ fn a_face_takes_at_most_a_hundred_bytes() {
     let m = terrain(128);
     let per_face = m.bytes() as f64 / m.faces().len() as f64;
     assert!(per_face <= 100.0, "{per_face}");
+    // Corners, normals and half-edges of each face; the start of each vertex's faces and the end; those faces; the tree.
+    let (faces, vertices) = (m.faces().len(), m.vertices().len());
+    assert_eq!(m.bytes(), (12 + 24 + 12) * faces + 4 * (vertices + 1) + 12 * faces + m.bvh().bytes());
+}
+
+#[test]
+fn a_vertex_is_level_where_all_its_edges_are_flat() {
+    // A fan around vertex 0, which is another corner of each face; its rim is not flat, but does not end at vertex 0.
+    let around = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
+    let fan = |height: f64| {
+        let rim = around.map(|[x, y]| [x, y, 0.0]);
+        Mesh::new(points(&[&[[0.0, 0.0, height]], &rim[..]].concat()), vec![[0, 1, 2], [3, 0, 2], [3, 4, 0], [0, 4, 1]])
+    };
+    let (flat, raised) = (fan(0.0).unwrap(), fan(0.5).unwrap());
+    assert!(flat.is_level(0) && (1..5).all(|rim| !flat.is_level(rim)));
+    assert!((0..5).all(|v| !raised.is_level(v)));
+    // One fold of several is enough.
+    let (vertices, faces) = cube();
+    let cube = Mesh::new(vertices, faces).unwrap();
+    assert!((0..8).all(|v| !cube.is_level(v)));
+}
+
+#[test]
+fn the_half_edges_of_the_most_faces_leave_three_bits() {
+    assert!(3 * MOST_FACES < 1 << 29 && 3 * (MOST_FACES + 1) >= 1 << 29);
 }
