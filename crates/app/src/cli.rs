@@ -33,6 +33,12 @@ pub enum Command {
     /// Prints a short summary on standard error. Events, frames and a summary in JSON are written where asked for; a file
     /// appears only once it is complete.
     Run(RunArgs),
+    /// Measure what accuracy costs in time
+    ///
+    /// Runs the scene with every method over a sweep of steps or tolerances: the slides as published, each improvement to it, and the methods
+    /// that a scene can ask for. Compares them with a reference in 128 bits, and prints errors, their parts, the
+    /// orders of convergence, and the cost. The method that the scene names is not looked at.
+    Accuracy(AccuracyArgs),
     /// List all that is wrong with a scene or a mesh
     ///
     /// A scene (.toml, .json) is read as `run` would read it, and the meshes it names are examined. A mesh (.obj, .stl, .ply)
@@ -82,6 +88,39 @@ pub struct RunArgs {
     pub quiet: bool,
 }
 
+/// What `accuracy` takes.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  carom accuracy room.toml
+  carom accuracy room.toml --csv accuracy.csv --plot accuracy.svg
+  carom accuracy room.toml --target-error 1e-6")]
+pub struct AccuracyArgs {
+    /// The scene: a .toml or .json file
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub scene: PathBuf,
+    /// Name the cheapest method whose positions are right to E m, and verify it by a run; exit code 5 if there is none
+    #[arg(long, value_name = "E", value_parser = positive)]
+    pub target_error: Option<f64>,
+    /// Write all measurements to FILE as CSV; `-` is standard output
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub csv: Option<PathBuf>,
+    /// Draw the error over the cost to FILE as SVG; `-` is standard output
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub plot: Option<PathBuf>,
+    /// How many balls are measured: the first N of the scene
+    #[arg(long, value_name = "N", default_value = "4")]
+    pub balls: NonZeroUsize,
+    /// How often the step is halved
+    #[arg(long, value_name = "N", default_value = "8", value_parser = clap::value_parser!(u32).range(0..=20))]
+    pub octaves: u32,
+    /// How often the tolerance is divided by ten
+    #[arg(long, value_name = "N", default_value = "10", value_parser = clap::value_parser!(u32).range(0..=11))]
+    pub decades: u32,
+    /// Timed runs of each method, of which the quickest counts; 0 counts the work only
+    #[arg(long, value_name = "N", default_value = "5", value_parser = clap::value_parser!(u32).range(0..=1000))]
+    pub repeats: u32,
+}
+
 /// What `check` takes.
 #[derive(Debug, Args)]
 pub struct CheckArgs {
@@ -103,6 +142,15 @@ pub struct MaterialsArgs {
 pub struct CompletionsArgs {
     /// The shell
     pub shell: Shell,
+}
+
+/// Reads a finite number above 0.
+fn positive(word: &str) -> Result<f64, String> {
+    match word.trim().parse::<f64>() {
+        Ok(x) if x.is_finite() && x > 0.0 => Ok(x),
+        Ok(_) => Err("it must be finite and > 0".to_owned()),
+        Err(_) => Err(format!("`{word}` is not a number")),
+    }
 }
 
 /// Reads `N` or `A/B`, finite and above 0.

@@ -33,6 +33,9 @@ pub enum AppError {
     /// Balls were ended by a guard.
     #[error("{0}")]
     Guard(String),
+    /// A target was not met.
+    #[error("{0}")]
+    Target(String),
 }
 
 impl AppError {
@@ -43,6 +46,7 @@ impl AppError {
             Self::Usage(_) => 2,
             Self::Scene(_) | Self::Balls { .. } | Self::Mesh(_) => 3,
             Self::Guard(_) => 4,
+            Self::Target(_) => 5,
         })
     }
 

@@ -25,6 +25,7 @@ pub fn main() -> ExitCode {
     let cli = Cli::parse();
     let result = match &cli.command {
         Command::Run(args) => commands::run::run(args),
+        Command::Accuracy(args) => commands::accuracy::accuracy(args),
         Command::Check(args) => commands::check::check(args),
         Command::Schema => commands::schema::schema(),
         Command::Materials(args) => commands::materials::materials(args),

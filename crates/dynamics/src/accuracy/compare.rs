@@ -161,7 +161,7 @@ pub struct EulerLaws {
 impl EulerLaws {
     /// Of the first flight of `record` with the step `h` (s); none without gravity, with air, or if the flight is shorter than a step.
     pub fn of(scene: &Scene, record: &Record, h: f64, first_impact: Option<f64>) -> Option<Self> {
-        let g = scene.gravity.filter(|_| scene.drag.is_none())?.acceleration();
+        let g = scene.gravity.filter(|_| only_gravity(scene))?.acceleration();
         let start = scene.balls.first()?.start();
         let (time, end, steps) = record.flight?;
         let strength = g.norm();
@@ -183,6 +183,11 @@ impl EulerLaws {
             late: first_impact.map(|late| late / (0.5 * h)),
         })
     }
+}
+
+/// Whether nothing but gravity acts in flight.
+pub fn only_gravity(scene: &Scene) -> bool {
+    scene.drag.is_none() && scene.magnus.is_none() && scene.buoyancy.is_none()
 }
 
 /// Where balls are after all: what still means something when positions do not.

@@ -1,11 +1,12 @@
 //! The measurement: references, runs of every method over its sweep, their errors, and their times.
 
-use super::compare::{Compared, Ends, Errors, EulerLaws, Shares, distance, growth, reference_error};
+use super::compare::{Compared, Ends, Errors, EulerLaws, Shares, distance, growth, only_gravity, reference_error};
 use super::course::{Course, Reach, Setting, follow};
 use super::fit::order;
-use super::real::{Real, rounded};
+use super::real::{rounded, vector};
 use super::record::{Record, Recorder};
 use super::report::{Cost, Measurement, ReferenceKind, Remark, Report, Sweep, work};
+use super::taylor::Field;
 use super::textbook::simulate_textbook;
 use super::variant::{Approach, Parameter, Variant};
 use super::world::World;
@@ -17,6 +18,8 @@ use crate::observer::Observer;
 use crate::plan::Plan;
 use crate::scene::{Method, Scene};
 use crate::simulate::simulate;
+use crate::tolerance::FINEST_TOLERANCE;
+use nalgebra::Vector3;
 
 /// Times at which positions are compared.
 const SAMPLES: u32 = 64;
@@ -60,6 +63,16 @@ struct Candidate {
 }
 
 impl Candidate {
+    fn new(variant: Variant, value: f64, scene: &Scene) -> Result<Self, SceneError> {
+        let approach = variant.with(value);
+        let method = match approach {
+            Approach::Method(method) => Some(method),
+            Approach::Textbook(_) => None,
+        };
+        let plan = Plan::new(&Scene { method, ..scene.clone() })?;
+        Ok(Self { variant, value, approach, plan })
+    }
+
     fn run(&self, ball: &Ball, observer: &mut impl Observer) -> Outcome {
         match &self.approach {
             Approach::Textbook(textbook) => simulate_textbook(&self.plan, textbook, ball, observer),
@@ -81,7 +94,7 @@ pub fn measure(scene: &Scene, effort: &Effort, clock: &mut dyn FnMut() -> f64) -
     if all > scene.balls.len() {
         stage.remarks.push(Remark::SomeBalls { followed: scene.balls.len(), of: all });
     }
-    let (references, growth) = stage.references();
+    let (references, growth, reference) = stage.references()?;
     let impacts = references.iter().map(|r| count(&r.course, r.until)).sum();
     let candidates = stage.candidates(effort, &references)?;
     let mut measured: Vec<Measurement> = Vec::new();
@@ -97,11 +110,7 @@ pub fn measure(scene: &Scene, effort: &Effort, clock: &mut dyn FnMut() -> f64) -
     let until = references.iter().map(|r| r.until).fold(scene.duration, f64::min);
     let complete = references.iter().all(|r| r.course.reach == Reach::Complete);
     Ok(Report {
-        reference: if scene.drag.is_none() && !world.has_faces() {
-            ReferenceKind::ClosedForm
-        } else {
-            ReferenceKind::Extended
-        },
+        reference,
         reference_error: reference_error(plan.farthest, growth),
         balls: scene.balls.len(),
         until,
@@ -111,6 +120,14 @@ pub fn measure(scene: &Scene, effort: &Effort, clock: &mut dyn FnMut() -> f64) -
         sweeps,
         remarks: stage.remarks,
     })
+}
+
+/// The ball with its start moved by `shift` (m); as it is, if that leaves the numbers.
+fn shifted(ball: &Ball, shift: &Vector3<f64>) -> Ball {
+    let start = ball.start();
+    let moved = Ball::new(start.position + shift, start.velocity, ball.radius(), ball.mass());
+    let moved = moved.and_then(|moved| moved.spinning(ball.spin())?.with_inertia(ball.inertia()));
+    moved.unwrap_or(*ball)
 }
 
 /// Impacts of a course up to a time.
@@ -133,18 +150,39 @@ struct Stage<'a> {
 }
 
 impl Stage<'_> {
-    /// The reference of each ball, and the worst growth of small differences while it can be compared.
-    fn references(&mut self) -> (Vec<Compared>, f64) {
-        let setting = Setting { plan: self.plan, drag: self.scene.drag, world: self.world, times: self.times };
+    /// The reference of each ball, and the worst growth of small differences while it can be compared; and what kind of reference it is.
+    fn references(&mut self) -> Result<(Vec<Compared>, f64, ReferenceKind), SceneError> {
+        let fields: Result<Vec<Field>, _> = self.scene.balls.iter().map(|ball| Field::of(self.scene, ball)).collect();
         let size = self.plan.farthest.max(f64::MIN_POSITIVE);
-        let shift = size * 2f64.powi(-70);
-        let none = [Real::zero(), Real::zero(), Real::zero()];
-        let some = [Real::from(shift * 0.5), Real::from(shift * 0.5), Real::from(shift * 0.5f64.sqrt())];
+        let direction = Vector3::new(0.5, 0.5, 0.5f64.sqrt());
+        let (pairs, shift, kind) = match fields {
+            Ok(fields) => {
+                let setting = Setting { plan: self.plan, world: self.world, times: self.times };
+                let shift = size * 2f64.powi(-70);
+                let pair = |(ball, field): (&Ball, &Field)| {
+                    let course = |shift: f64| follow(&setting, ball, field, &vector(&(direction * shift)));
+                    (course(0.0), course(shift))
+                };
+                let pairs: Vec<(Course, Course)> = self.scene.balls.iter().zip(&fields).map(pair).collect();
+                let closed = fields.iter().all(Field::is_constant) && !self.world.has_faces();
+                (pairs, shift, if closed { ReferenceKind::ClosedForm } else { ReferenceKind::Extended })
+            }
+            Err(effect) => {
+                let shift = size * 2f64.powi(-30);
+                let finest = |shift: f64| -> Result<Vec<Course>, SceneError> {
+                    let balls = self.scene.balls.iter().map(|ball| shifted(ball, &(direction * shift)));
+                    let method = Some(Method::Adaptive { tolerance: FINEST_TOLERANCE });
+                    let scene = Scene { balls: balls.collect(), method, ..self.scene.clone() };
+                    let candidate = Candidate::new(Variant::Adaptive, FINEST_TOLERANCE, &scene)?;
+                    Ok(self.beside(&scene).run(&candidate).iter().map(|r| r.course(self.plan.duration)).collect())
+                };
+                let pairs = finest(0.0)?.into_iter().zip(finest(shift)?).collect();
+                (pairs, shift, ReferenceKind::Itself(effect))
+            }
+        };
         let mut worst = 1.0_f64;
         let mut references = Vec::new();
-        for (ball, start) in self.scene.balls.iter().enumerate() {
-            let course = follow(&setting, start, &none);
-            let moved = follow(&setting, start, &some);
+        for (ball, (course, moved)) in pairs.into_iter().enumerate() {
             let growth = growth(&course, &moved, shift);
             let chaotic = growth.iter().position(|g| *g > GROWTH_LIMIT);
             let from = chaotic.map(|k| self.times[k]);
@@ -160,7 +198,12 @@ impl Stage<'_> {
             worst = known.fold(worst, |worst, g| worst.max(*g));
             references.push(Compared { until: until.min(course.until), course });
         }
-        (references, worst)
+        Ok((references, worst, kind))
+    }
+
+    /// The same stage for a scene that differs in its balls.
+    fn beside<'s>(&'s self, scene: &'s Scene) -> Stage<'s> {
+        Stage { scene, plan: self.plan, world: self.world, times: self.times, remarks: Vec::new() }
     }
 
     /// Every method with every step or tolerance of its sweep, the coarse ones first.
@@ -176,13 +219,8 @@ impl Stage<'_> {
                 Parameter::None => vec![0.0],
             };
             for value in values {
-                let approach = variant.with(value);
-                let method = match approach {
-                    Approach::Method(method) => Some(method),
-                    Approach::Textbook(_) => None,
-                };
-                match Plan::new(&Scene { method, ..self.scene.clone() }) {
-                    Ok(plan) => candidates.push(Candidate { variant, value, approach, plan }),
+                match Candidate::new(variant, value, self.scene) {
+                    Ok(candidate) => candidates.push(candidate),
                     Err(SceneError::NoExactFlight { .. }) => self.remarks.push(Remark::NoExactFlight),
                     Err(error) => return Err(error),
                 }
@@ -202,16 +240,13 @@ impl Stage<'_> {
 
     /// The same run from starts that are an ulp away.
     fn run_beside(&self, candidate: &Candidate) -> Vec<Record> {
+        let least = self.plan.farthest * f64::EPSILON;
         let one = |ball: &Ball| {
-            let start = ball.start();
-            let least = self.plan.farthest * f64::EPSILON;
-            let next = start.position.map(|x| if x == 0.0 { least } else { x.next_up() });
-            let Ok(moved) = Ball::new(next, start.velocity, ball.radius(), ball.mass()) else { return *ball };
-            moved
+            let ulp = |x: f64| if x == 0.0 { least } else { x.next_up() - x };
+            shifted(ball, &ball.start().position.coords.map(ulp))
         };
         let beside = Scene { balls: self.scene.balls.iter().map(one).collect(), ..self.scene.clone() };
-        Stage { scene: &beside, plan: self.plan, world: self.world, times: self.times, remarks: Vec::new() }
-            .run(candidate)
+        self.beside(&beside).run(candidate)
     }
 
     fn judge(
@@ -269,13 +304,7 @@ impl Stage<'_> {
         let known = match known {
             Some(known) => known,
             None => {
-                let approach = variant.with(value);
-                let method = match approach {
-                    Approach::Method(method) => Some(method),
-                    Approach::Textbook(_) => None,
-                };
-                let plan = Plan::new(&Scene { method, ..self.scene.clone() })?;
-                let records = self.run(&Candidate { variant, value, approach, plan });
+                let records = self.run(&Candidate::new(variant, value, self.scene)?);
                 twins.push((variant, value, records));
                 twins.len() - 1
             }
@@ -314,7 +343,7 @@ impl Stage<'_> {
             let variant = sweep.variant;
             let whole = sweep.order.value();
             let higher = variant.textbook_orders().is_some_and(|[flight, _]| flight > 1);
-            if higher && self.scene.drag.is_none() && comparable > 0 && impacts > 0 {
+            if higher && only_gravity(self.scene) && comparable > 0 && impacts > 0 {
                 self.remarks.push(Remark::ExactFlights(variant));
             }
             if let (Some(flight), Some(order)) = (sweep.flight_order.value(), whole)

@@ -1,10 +1,11 @@
 //! What is kept of a run under test: where the ball was at fixed times, its impacts, its first flight, how deep it got.
 
-use super::real::{Real, point};
-use super::world::World;
+use super::course::{Course, Impact, Reach};
+use super::real::{Real, point, vector};
+use super::world::{Obstacle, World};
 use crate::body::{Ball, State};
 use crate::energy::{kinetic, potential};
-use crate::events::{Ending, Event, EventKind, Outcome};
+use crate::events::{Ending, Event, EventKind, Motion, Outcome};
 use crate::observer::{Observer, Segment};
 use crate::plan::Plan;
 use crate::scene::Scene;
@@ -37,7 +38,7 @@ pub struct Recorder<'a> {
     times: &'a [f64],
     radius: f64,
     planes: Vec<(Plane, f64)>,
-    obstacles: Vec<super::world::Obstacle>,
+    obstacles: Vec<Obstacle>,
     happened: bool,
     record: Record,
 }
@@ -145,8 +146,20 @@ pub fn energy(scene: &Scene, state: &State) -> f64 {
 }
 
 impl Record {
-    /// Whether the run got to its end.
-    pub fn is_complete(&self) -> bool {
-        self.outcome.is_some_and(|outcome| outcome.ending == Ending::Completed)
+    /// The run as a course, where there is nothing better to compare with; known up to `duration` (s) if it got there.
+    pub fn course(&self, duration: f64) -> Course {
+        let resting = self.outcome.is_some_and(|outcome| outcome.motion == Motion::Resting);
+        let ended = self.outcome.filter(|outcome| outcome.ending != Ending::Completed).map(|outcome| outcome.time);
+        Course {
+            samples: self.samples.iter().map(|s| [point(&s.position), vector(&s.velocity)]).collect(),
+            impacts: self
+                .impacts
+                .iter()
+                .map(|(t, surface)| Impact { time: Real::from(*t), surface: *surface })
+                .collect(),
+            rest: resting.then_some(duration),
+            until: ended.unwrap_or(duration),
+            reach: if ended.is_some() { Reach::Undecided } else { Reach::Complete },
+        }
     }
 }

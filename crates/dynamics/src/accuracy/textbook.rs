@@ -127,7 +127,7 @@ fn respond(plan: &Plan, hit: &Collision, v: Vector3<f64>, counters: &mut Counter
     counters.impacts += 1;
     counters.restitution += 1;
     counters.friction += 1;
-    let c_r = material.restitution.coefficient();
+    let c_r = material.restitution.at(v_n.norm());
     material.friction.slow(v_t, v_n.norm(), c_r) - v_n * c_r
 }
 

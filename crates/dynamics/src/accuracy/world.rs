@@ -281,10 +281,8 @@ mod tests {
     #[test]
     fn a_ball_meets_an_edge_where_the_quartic_says() {
         // Straight down beside the edge y = 0 at a distance of 0.3, radius 0.5: it touches 0.4 above.
-        use super::super::taylor::Field;
-        let field = Field::new(&Vector3::zeros(), None, 0.5, None);
         let start = [1.0, -0.3, 2.4].map(Real::from);
-        let flight = field.fly(&start, &[0.0, 0.0, -1.0].map(Real::from), 8.0);
+        let flight = Flight::parabola(&start, &[0.0, 0.0, -1.0].map(Real::from), &[0.0; 3].map(Real::from), 8.0);
         let touch = Real::from(2f64.powi(-100));
         let met =
             Obstacle::Triangle(corners()).meet(&flight, &Real::from(0.5), &Real::zero(), &Real::from(8.0), &touch);
