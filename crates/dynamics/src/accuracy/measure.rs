@@ -1,10 +1,12 @@
 //! The measurement: references, runs of every method over its sweep, their errors, and their times.
 
-use super::compare::{Compared, Ends, Errors, EulerLaws, Shares, distance, growth, only_gravity, reference_error};
+use super::compare::{
+    Compared, Ends, Errors, EulerLaws, Shares, Times, distance, growth, only_gravity, reference_error,
+};
 use super::course::{Course, Reach, Setting, follow};
 use super::fit::order;
 use super::real::{rounded, vector};
-use super::record::{Record, Recorder};
+use super::record::{Record, Recorder, effective_step};
 use super::report::{Cost, Measurement, ReferenceKind, Remark, Report, Sweep, work};
 use super::taylor::Field;
 use super::textbook::simulate_textbook;
@@ -13,8 +15,8 @@ use super::world::World;
 use crate::body::{Ball, State};
 use crate::counters::Counters;
 use crate::error::SceneError;
-use crate::events::{Motion, Outcome};
-use crate::observer::Observer;
+use crate::events::{Event, Motion, Outcome};
+use crate::observer::{Observer, Segment};
 use crate::plan::Plan;
 use crate::scene::{Method, Scene};
 use crate::simulate::simulate;
@@ -89,14 +91,14 @@ pub fn measure(scene: &Scene, effort: &Effort, clock: &mut dyn FnMut() -> f64) -
     let scene = Scene { balls, method: None, ..scene.clone() };
     let plan = Plan::new(&scene)?;
     let world = World::new(&plan);
-    let times: Vec<f64> = (1..=SAMPLES).map(|k| scene.duration * (f64::from(k) / f64::from(SAMPLES))).collect();
+    let (times, coarse) = times(&plan);
     let mut stage = Stage { scene: &scene, plan: &plan, world: &world, times: &times, remarks: Vec::new() };
     if all > scene.balls.len() {
         stage.remarks.push(Remark::SomeBalls { followed: scene.balls.len(), of: all });
     }
     let (references, growth, reference) = stage.references()?;
     let impacts = references.iter().map(|r| count(&r.course, r.until)).sum();
-    let candidates = stage.candidates(effort, &references)?;
+    let candidates = stage.candidates(effort, coarse)?;
     let mut measured: Vec<Measurement> = Vec::new();
     let mut twins: Vec<(Variant, f64, Vec<Record>)> = Vec::new();
     for candidate in &candidates {
@@ -104,9 +106,9 @@ pub fn measure(scene: &Scene, effort: &Effort, clock: &mut dyn FnMut() -> f64) -
         measured.push(stage.judge(candidate, &records, &references, &mut twins)?);
     }
     time(&candidates, &scene, effort.repeats, clock, &mut measured);
-    let fits = impacts > 0 && comparable(&references, &times) > 0;
+    let fits = impacts > 0 && comparable(&references, &times.all) > 0;
     let sweeps = stage.sweeps(measured, effort, fits);
-    stage.conclude(&sweeps, impacts, comparable(&references, &times));
+    stage.conclude(&sweeps, impacts, comparable(&references, &times.all));
     let until = references.iter().map(|r| r.until).fold(scene.duration, f64::min);
     let complete = references.iter().all(|r| r.course.reach == Reach::Complete);
     Ok(Report {
@@ -130,6 +132,40 @@ fn shifted(ball: &Ball, shift: &Vector3<f64>) -> Ball {
     moved.unwrap_or(*ball)
 }
 
+/// When to look, and the coarsest step, in s, a power of two: the first flight has a few of them, and ends one of them where all finer ones end
+/// as well.
+fn times(plan: &Plan) -> (Times, f64) {
+    let duration = plan.duration;
+    let first = |ball: &Ball| {
+        let mut run = FirstImpact(duration);
+        simulate(plan, ball, &mut run);
+        run.0
+    };
+    let first = plan.balls.iter().map(first).filter(|t| *t > 0.0).fold(duration, f64::min);
+    let coarse = 2f64.powf((first / COARSE_STEPS).log2().floor());
+    let mut flight = (first / coarse).floor() * coarse;
+    if flight >= first && flight > coarse {
+        flight -= coarse;
+    }
+    let mut all: Vec<f64> = (1..=SAMPLES).map(|k| duration * (f64::from(k) / f64::from(SAMPLES))).collect();
+    if !all.contains(&flight) {
+        all.push(flight);
+        all.sort_by(f64::total_cmp);
+    }
+    (Times { all, flight }, coarse)
+}
+
+/// The time of the first impact, in s.
+struct FirstImpact(f64);
+
+impl Observer for FirstImpact {
+    fn event(&mut self, event: &Event) {
+        self.0 = self.0.min(event.time);
+    }
+
+    fn segment(&mut self, _: &Segment) {}
+}
+
 /// Impacts of a course up to a time.
 fn count(course: &Course, until: f64) -> usize {
     course.impacts.iter().filter(|impact| impact.time.to_f64() <= until).count()
@@ -145,7 +181,7 @@ struct Stage<'a> {
     scene: &'a Scene,
     plan: &'a Plan,
     world: &'a World,
-    times: &'a [f64],
+    times: &'a Times,
     remarks: Vec<Remark>,
 }
 
@@ -157,7 +193,7 @@ impl Stage<'_> {
         let direction = Vector3::new(0.5, 0.5, 0.5f64.sqrt());
         let (pairs, shift, kind) = match fields {
             Ok(fields) => {
-                let setting = Setting { plan: self.plan, world: self.world, times: self.times };
+                let setting = Setting { plan: self.plan, world: self.world, times: &self.times.all };
                 let shift = size * 2f64.powi(-70);
                 let pair = |(ball, field): (&Ball, &Field)| {
                     let course = |shift: f64| follow(&setting, ball, field, &vector(&(direction * shift)));
@@ -185,7 +221,7 @@ impl Stage<'_> {
         for (ball, (course, moved)) in pairs.into_iter().enumerate() {
             let growth = growth(&course, &moved, shift);
             let chaotic = growth.iter().position(|g| *g > GROWTH_LIMIT);
-            let from = chaotic.map(|k| self.times[k]);
+            let from = chaotic.map(|k| self.times.all[k]);
             if let Some(from) = from {
                 self.remarks.push(Remark::Chaotic { ball, from });
             }
@@ -193,7 +229,7 @@ impl Stage<'_> {
                 self.remarks.push(Remark::ReferenceEnds { ball, at: course.until, reach: course.reach });
             }
             // Up to the sample before.
-            let until = chaotic.map_or(course.until, |k| k.checked_sub(1).map_or(0.0, |k| self.times[k]));
+            let until = chaotic.map_or(course.until, |k| k.checked_sub(1).map_or(0.0, |k| self.times.all[k]));
             let known = growth.iter().take(chaotic.unwrap_or(growth.len()));
             worst = known.fold(worst, |worst, g| worst.max(*g));
             references.push(Compared { until: until.min(course.until), course });
@@ -207,10 +243,7 @@ impl Stage<'_> {
     }
 
     /// Every method with every step or tolerance of its sweep, the coarse ones first.
-    fn candidates(&mut self, effort: &Effort, references: &[Compared]) -> Result<Vec<Candidate>, SceneError> {
-        let first = references.iter().filter_map(|r| r.course.impacts.first()).map(|i| i.time.to_f64());
-        let first = first.filter(|t| *t > 0.0).fold(self.scene.duration, f64::min);
-        let coarse = 2f64.powf((first / COARSE_STEPS).log2().floor());
+    fn candidates(&mut self, effort: &Effort, coarse: f64) -> Result<Vec<Candidate>, SceneError> {
         let mut candidates = Vec::new();
         for &variant in effort.variants {
             let values: Vec<f64> = match variant.parameter() {
@@ -231,7 +264,7 @@ impl Stage<'_> {
 
     fn run(&self, candidate: &Candidate) -> Vec<Record> {
         let one = |ball: &Ball| {
-            let mut recorder = Recorder::new(&candidate.plan, self.world, self.times, ball);
+            let mut recorder = Recorder::new(&candidate.plan, self.world, &self.times.all, ball);
             let outcome = candidate.run(ball, &mut recorder);
             recorder.finish(outcome)
         };
@@ -258,14 +291,14 @@ impl Stage<'_> {
     ) -> Result<Measurement, SceneError> {
         let Candidate { variant, value, .. } = *candidate;
         let errors = Errors::of(self.scene, self.times, records, references);
-        let rounding = distance(self.times, records, &self.run_beside(candidate), references);
+        let rounding = distance(&self.times.all, records, &self.run_beside(candidate), references);
         let twin = variant.twin();
         let (integration, determination) = if twin == variant {
             (errors.position, errors.off_touch)
         } else {
             let certified = self.twin(twin, value, twins)?;
             let error = Errors::of(self.scene, self.times, certified, references).position;
-            (error, distance(self.times, records, certified, references))
+            (error, distance(&self.times.all, records, certified, references))
         };
         let integration = if integration > 4.0 * rounding { integration } else { 0.0 };
         let outcomes = || records.iter().filter_map(|r| r.outcome);
@@ -279,10 +312,13 @@ impl Stage<'_> {
         let impacts = records.iter().map(|r| r.impacts.len()).sum();
         let euler = matches!(variant, Variant::Slides | Variant::SlidesOwnF | Variant::Euler);
         let laws = records.first().filter(|_| euler);
+        let sums = |k: usize| records.iter().fold((0.0, 0.0), |s, r| (s.0 + r.steps[k].0, s.1 + r.steps[k].1));
+        let (first, all) = (sums(0), sums(1));
         Ok(Measurement {
             variant,
             value,
-            mean_step: seconds / counters.paths.max(1) as f64,
+            step: effective_step(all),
+            flight_step: effective_step(first),
             errors,
             shares: Shares { integration, determination, rounding },
             laws: laws.and_then(|record| EulerLaws::of(self.scene, record, value, errors.first_impact)),
@@ -320,13 +356,15 @@ impl Stage<'_> {
             if measurements.is_empty() {
                 continue;
             }
-            let size = |m: &Measurement| if variant.parameter() == Parameter::Step { m.value } else { m.mean_step };
-            let fit = |error: fn(&Errors) -> f64| {
+            let stepping = variant.parameter() == Parameter::Step;
+            let fit = |error: fn(&Errors) -> f64, step: fn(&Measurement) -> f64| {
+                let step = |m: &Measurement| if stepping { m.value } else { step(m) };
                 let points: Vec<_> =
-                    measurements.iter().map(|m| (size(m), error(&m.errors), m.shares.rounding)).collect();
-                order(if fits { &points } else { &[] })
+                    measurements.iter().map(|m| (step(m), error(&m.errors), m.shares.rounding)).collect();
+                order(if fits { &points } else { &[] }, stepping)
             };
-            let (flight_order, order) = (fit(|e| e.flight), fit(|e| e.position));
+            let flight_order = fit(|e| e.flight, |m| m.flight_step);
+            let order = fit(|e| e.position, |m| m.step);
             sweeps.push(Sweep { variant, measurements, flight_order, order });
         }
         sweeps

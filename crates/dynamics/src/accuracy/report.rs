@@ -48,8 +48,10 @@ pub struct Measurement {
     pub variant: Variant,
     /// Its step in s or its tolerance; 0 for the exact flight.
     pub value: f64,
-    /// The mean length of its steps in s.
-    pub mean_step: f64,
+    /// The effective length of its steps in s: held fixed, it would give a method of order 5 the same error.
+    pub step: f64,
+    /// The same in the first flights.
+    pub flight_step: f64,
     /// Its errors.
     pub errors: Errors,
     /// The parts of the error of the positions.
@@ -178,6 +180,7 @@ impl fmt::Display for Remark {
                 match variant {
                     Variant::Rk4LinearF => "f = d0 / (d0 - d1) is off by O(h^2) on a curved path, whatever the flight is worth",
                     Variant::Adaptive => "the step after a bounce begins anew, with the length that was right before it",
+                    Variant::Slides | Variant::SlidesOwnF => "a rounded hit position may lie behind the plane, and edges are not met",
                     _ => "the errors of several flights and impacts add up, and none of them is in its limit yet",
                 }
             ),

@@ -177,14 +177,14 @@ fn earliest(plan: &Plan, method: &Textbook, ball: &Ball, step: &Step, counters: 
     earliest
 }
 
-/// Where `distance`, which begins at `d0`, changes its sign in [0, 1].
+/// Where `distance`, which begins at `d0`, changes its sign in [0, 1]: the last f that has not.
 fn root(distance: impl Fn(f64) -> f64, d0: f64) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
         if (distance(middle) >= 0.0) == (d0 >= 0.0) { low = middle } else { high = middle }
     }
-    high
+    low
 }
 
 /// Whether the determinants of the edges and the point, on the plane of the dominant axis, all have one sign.

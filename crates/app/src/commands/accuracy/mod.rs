@@ -11,8 +11,8 @@ use crate::scene;
 use crate::terminal::say;
 use carom_dynamics::accuracy::{Effort, Measurement, Report, Variant, measure};
 use carom_dynamics::scene::Scene;
+use cpu_time::ThreadTime;
 use std::path::Path;
-use std::time::Instant;
 
 /// Measures the scene and tells what came out.
 pub fn accuracy(args: &AccuracyArgs) -> Result<(), AppError> {
@@ -31,7 +31,8 @@ pub fn accuracy(args: &AccuracyArgs) -> Result<(), AppError> {
         repeats: args.repeats,
         ..Effort::default()
     };
-    let start = Instant::now();
+    // Of this thread, so that other programs do not count.
+    let start = ThreadTime::now();
     let mut clock = || start.elapsed().as_secs_f64();
     let report = measure(&loaded.scene, &effort, &mut clock).map_err(|error| loaded.refuse(&error))?;
     let name = args.scene.file_name().unwrap_or_default().to_string_lossy();

@@ -80,6 +80,8 @@ pub fn setting(m: &Measurement) -> String {
 
 fn value(m: &Measurement) -> String {
     match m.variant.parameter() {
+        // Steps are powers of two.
+        Parameter::Step if m.value < 1.0 => format!("1/{}", 1.0 / m.value),
         Parameter::Step => format!("{}", m.value),
         Parameter::Tolerance => format!("{:.0e}", m.value),
         Parameter::None => "-".to_owned(),
@@ -236,7 +238,7 @@ fn ends(report: &Report) -> Option<Columns> {
 pub fn csv(report: &Report) -> String {
     let mut text = String::from(
         "method,step,tolerance,position_error,flight_error,impact_time_error,first_impact_error,missed,invented,energy_error,\
-         penetration,integration,determination,rounding,off_touch,mean_step,end_impacts,end_resting,end_energy,end_spread,work",
+         penetration,integration,determination,rounding,off_touch,effective_step,end_impacts,end_resting,end_energy,end_spread,work",
     );
     let names = report.measurements().next().map(|m| m.counters.named().map(|(name, _)| name));
     names.iter().flatten().for_each(|name| {
@@ -268,7 +270,7 @@ pub fn csv(report: &Report) -> String {
             s.determination,
             s.rounding,
             e.off_touch,
-            m.mean_step,
+            m.step,
             m.ends.impacts,
             m.ends.resting,
             m.ends.energy,
