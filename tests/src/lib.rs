@@ -2,6 +2,7 @@
 
 pub mod catalogue;
 pub mod checker;
+pub mod closed;
 pub mod data;
 pub mod exact;
 pub mod grid;
@@ -9,8 +10,12 @@ pub mod hunt;
 pub mod nasty;
 pub mod obj;
 pub mod oracle;
+pub mod patience;
 pub mod parallel;
 pub mod random;
+pub mod shots;
+pub mod soak;
+pub mod solids;
 pub mod sources;
 pub mod stage;
 pub mod world;

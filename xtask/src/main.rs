@@ -1,4 +1,4 @@
-//! The project's own tasks: `cargo xtask verify` and `cargo xtask readme`.
+//! The project's own tasks: `cargo xtask verify`, `cargo xtask readme` and `cargo xtask soak`.
 //!
 //! This crate has no dependencies on purpose: it builds in a second on a fresh clone, and no feature of another crate
 //! can make cargo rebuild it while it runs.
@@ -8,6 +8,7 @@ mod log;
 mod blocks;
 mod commands;
 mod readme;
+mod soak;
 mod steps;
 mod verify;
 
@@ -17,7 +18,7 @@ use std::process::ExitCode;
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
 /// The tasks, as the README may name them.
-const TASKS: [&str; 2] = ["verify", "readme"];
+const TASKS: [&str; 3] = ["verify", "readme", "soak"];
 
 const HELP: &str = "\
 Usage: cargo xtask TASK
@@ -27,6 +28,8 @@ Tasks:
   verify --only STEP[,STEP]   only these steps
   verify --list               the steps, and what each checks
   readme                      rewrites the generated blocks of README.md
+  soak --bounces N            bounces balls N times (1e8 say) in scenes of every kind and reports escapes, gains and stalls
+  soak --shots M              shoots M points and M balls from inside closed meshes at their edges and vertices
 
 Exit code: 0 all is well; 1 a step failed; 2 usage.";
 
@@ -41,6 +44,7 @@ fn main() -> ExitCode {
             Err(error) => return usage(&error.to_string()),
         },
         ["readme"] => readme::rewrite(),
+        ["soak", ref rest @ ..] => soak::run(rest),
         ["help" | "--help" | "-h"] => {
             println!("{HELP}");
             Ok(ExitCode::SUCCESS)

@@ -1,5 +1,6 @@
 //! The command line: commands, options and their help.
 
+use crate::model::Keys;
 use clap::{Args, Parser, Subcommand, ValueHint};
 use clap_complete::Shell;
 use std::num::NonZeroUsize;
@@ -33,6 +34,17 @@ pub enum Command {
     /// Prints a short summary on standard error. Events, frames and a summary in JSON are written where asked for; a file
     /// appears only once it is complete.
     Run(RunArgs),
+    /// Show a scene: write a page that plays it in any browser
+    ///
+    /// Simulates the scene and writes one HTML file that needs nothing else, not even a network: surfaces and balls in 3-D, to
+    /// turn, pause, scrub and follow, every impact with its data, energy over time.
+    View(ViewArgs),
+    /// Take a scene elsewhere: write a model with its motion, for programs of 3-D
+    ///
+    /// Simulates the scene and writes surfaces, balls and motion as glTF 2.0, one .glb file. Each event is a key with the velocities
+    /// before and after it (CUBICSPLINE), so that a flight between two of them is the exact parabola; other motions
+    /// are off by no more than single precision is.
+    Export(ExportArgs),
     /// Measure what accuracy costs in time
     ///
     /// Runs the scene with every method over a sweep of steps or tolerances: the slides as published, each improvement to it, and the methods
@@ -60,9 +72,6 @@ pub enum Command {
   carom run room.toml --events events.csv --frames frames.csv --fps 30
   carom run room.toml --balls balls.csv --events - | head")]
 pub struct RunArgs {
-    /// The scene: a .toml or .json file
-    #[arg(value_hint = ValueHint::FilePath)]
-    pub scene: PathBuf,
     /// Write the events (impacts, slides, rests ...) to FILE: .csv or .jsonl; `-` is standard output, as CSV
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub events: Option<PathBuf>,
@@ -75,6 +84,17 @@ pub struct RunArgs {
     /// Write the summary to FILE as JSON; `-` is standard output
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub summary: Option<PathBuf>,
+    /// What to simulate.
+    #[command(flatten)]
+    pub input: SceneArgs,
+}
+
+/// What every command takes that simulates a scene.
+#[derive(Debug, Args)]
+pub struct SceneArgs {
+    /// The scene: a .toml or .json file
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub scene: PathBuf,
     /// Read the balls from FILE instead of the scene; `-` is standard input
     ///
     /// CSV with a header: x,y,z and any of vx,vy,vz,radius,mass, with the defaults of a scene.
@@ -121,6 +141,38 @@ pub struct AccuracyArgs {
     pub repeats: u32,
 }
 
+/// What `view` takes.
+#[derive(Debug, Args)]
+#[command(after_help = "Example:
+  carom view room.toml -o room.html")]
+pub struct ViewArgs {
+    /// Write the page to FILE; `-` is standard output
+    #[arg(long, short, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub output: PathBuf,
+    /// What to simulate.
+    #[command(flatten)]
+    pub input: SceneArgs,
+}
+
+/// What `export` takes.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  carom export room.toml -o room.glb
+  carom export room.toml -o room.glb --keys fps=30")]
+pub struct ExportArgs {
+    /// Write the model to FILE, a .glb; `-` is standard output
+    #[arg(long, short, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub output: PathBuf,
+    /// What the motion is given by: `events`, or `fps=N` for programs that ignore velocities
+    ///
+    /// `fps=N` is a position for every N-th of a second, and straight lines between them.
+    #[arg(long, value_name = "KEYS", default_value = "events", value_parser = keys)]
+    pub keys: Keys,
+    /// What to simulate.
+    #[command(flatten)]
+    pub input: SceneArgs,
+}
+
 /// What `check` takes.
 #[derive(Debug, Args)]
 pub struct CheckArgs {
@@ -150,6 +202,15 @@ fn positive(word: &str) -> Result<f64, String> {
         Ok(x) if x.is_finite() && x > 0.0 => Ok(x),
         Ok(_) => Err("it must be finite and > 0".to_owned()),
         Err(_) => Err(format!("`{word}` is not a number")),
+    }
+}
+
+/// Reads `events` or `fps=N`.
+fn keys(word: &str) -> Result<Keys, String> {
+    match (word, word.strip_prefix("fps=")) {
+        ("events", _) => Ok(Keys::Events),
+        (_, Some(number)) => Ok(Keys::Frames { fps: frames_per_second(number)? }),
+        _ => Err("keys are `events`, or `fps=N` such as fps=30".to_owned()),
     }
 }
 

@@ -7,16 +7,21 @@ mod cli;
 mod commands;
 mod error;
 mod mesh_file;
+mod model;
 mod output;
 pub mod plot;
+mod replay;
 mod scene;
+mod stage;
 mod summary;
 mod terminal;
+mod view;
 
 use carom_dynamics::scene::Scene;
+use carom_geometry::mesh::Mesh;
 use clap::Parser;
 use cli::{Cli, Command};
-use nalgebra::Point3;
+use mesh_file::RawMesh;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -26,6 +31,8 @@ pub fn main() -> ExitCode {
     let result = match &cli.command {
         Command::Run(args) => commands::run::run(args),
         Command::Accuracy(args) => commands::accuracy::accuracy(args),
+        Command::View(args) => commands::view::view(args),
+        Command::Export(args) => commands::export::export(args),
         Command::Check(args) => commands::check::check(args),
         Command::Schema => commands::schema::schema(),
         Command::Materials(args) => commands::materials::materials(args),
@@ -47,10 +54,10 @@ pub fn read_scene(path: &Path) -> Result<Scene, String> {
     scene::load(path, None).map(|loaded| loaded.scene).map_err(|error| error.render(false))
 }
 
-/// The vertices and triangles in the mesh file at `path`: OBJ, STL or PLY by its extension, in the unit of the file.
+/// The mesh in the file at `path`: OBJ, STL or PLY by its extension, in the unit of the file.
 ///
-/// Every index is in range and every coordinate finite. Fails with what is wrong, and in which line.
-pub fn read_mesh(path: &Path) -> Result<(Vec<Point3<f64>>, Vec<[u32; 3]>), String> {
-    let mesh = mesh_file::read(path).map_err(|error| error.to_string())?;
-    Ok((mesh.vertices, mesh.faces))
+/// Fails with what is wrong, and in which line.
+pub fn read_mesh(path: &Path) -> Result<Mesh, String> {
+    let RawMesh { vertices, faces } = mesh_file::read(path).map_err(|error| error.to_string())?;
+    Mesh::new(vertices, faces).map_err(|error| format!("{}: {error}", path.display()))
 }

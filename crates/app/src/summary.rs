@@ -8,7 +8,6 @@ use carom_dynamics::surface::{Shape, Surface};
 use carom_geometry::bounds::Aabb;
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::fmt::Write;
 use std::time::Duration;
 
 /// What a run came to. As JSON all but `wall_seconds` is the same on every machine.
@@ -173,34 +172,45 @@ impl Summary {
         serde_json::to_string_pretty(self).unwrap_or_default() + "\n"
     }
 
+    /// The unit of its energies.
+    pub fn energy_unit(&self) -> &'static str {
+        self.energy.unit
+    }
+
+    /// What came of it, without what it cost: a few lines, the same on every machine.
+    pub fn result(&self) -> Vec<String> {
+        self.lines("")
+    }
+
     /// For the eye: a few lines.
     pub fn text(&self) -> String {
-        let mut text = String::new();
-        let mut line = |name: &str, what: String| {
-            // A string takes everything that is written to it.
-            let _ = writeln!(text, "{name:<9} {what}");
-        };
-        line("balls", count(self.balls as u64));
-        line("impacts", count(self.impacts));
+        let mut lines = self.lines(&format!(", {:.3} s on the clock", self.wall_seconds));
+        let work: Vec<String> =
+            self.counters.iter().filter(|(_, n)| **n > 0).map(|(name, n)| format!("{name} {}", count(*n))).collect();
+        lines.push(line("work", &work.join(", ")));
+        lines.join("\n")
+    }
+
+    /// The lines of the result; `clock` goes behind the time simulated.
+    fn lines(&self, clock: &str) -> Vec<String> {
         let off = match self.off_the_map {
             Some(n) if n > 0 => format!(" ({} of them off the map)", count(n as u64)),
             _ => String::new(),
         };
         let [resting, sliding, flying] = [self.resting, self.sliding, self.flying].map(|n| count(n as u64));
-        line("at end", format!("{resting} resting, {sliding} sliding, {flying} flying{off}"));
-        line("time", format!("{} s simulated, {:.3} s on the clock", self.duration, self.wall_seconds));
         let Energy { unit, start, end, change_percent } = &self.energy;
         let change = match change_percent {
             Some(change) if *change < 0.0 => format!(", {} % lost", percent(-change)),
             Some(change) if *change > 0.0 => format!(", {} % gained", percent(*change)),
             _ => String::new(),
         };
-        line("energy", format!("{start:.6e} {unit} at start, {end:.6e} {unit} at end{change}"));
-        let work: Vec<String> =
-            self.counters.iter().filter(|(_, n)| **n > 0).map(|(name, n)| format!("{name} {}", count(*n))).collect();
-        line("work", work.join(", "));
-        text.truncate(text.trim_end().len());
-        text
+        vec![
+            line("balls", &count(self.balls as u64)),
+            line("impacts", &count(self.impacts)),
+            line("at end", &format!("{resting} resting, {sliding} sliding, {flying} flying{off}")),
+            line("time", &format!("{} s simulated{clock}", self.duration)),
+            line("energy", &format!("{start:.6e} {unit} at start, {end:.6e} {unit} at end{change}")),
+        ]
     }
 
     /// What the guards ended, if anything.
@@ -217,6 +227,11 @@ impl Summary {
         };
         Some(format!("{noun} ended by a guard before the duration was over: {}{rest}{help}", list.join(", ")))
     }
+}
+
+/// A line of the summary.
+fn line(name: &str, what: &str) -> String {
+    format!("{name:<9} {what}")
 }
 
 /// A whole number in groups of three digits.

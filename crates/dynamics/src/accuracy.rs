@@ -24,3 +24,6 @@ pub use fit::Order;
 pub use measure::{Effort, choose, measure};
 pub use report::{Cost, Measurement, ReferenceKind, Remark, Report, Sweep, work};
 pub use variant::{Approach, Parameter, Variant};
+
+#[cfg(test)]
+mod tests;

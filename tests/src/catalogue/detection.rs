@@ -8,7 +8,6 @@ mod polygons;
 mod rims;
 mod rows;
 mod slivers;
-mod solids;
 mod start;
 mod watertight;
 

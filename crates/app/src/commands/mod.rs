@@ -3,9 +3,11 @@
 pub mod accuracy;
 pub mod check;
 pub mod completions;
+pub mod export;
 pub mod materials;
 pub mod run;
 pub mod schema;
+pub mod view;
 
 use crate::error::AppError;
 use crate::output::target::Target;

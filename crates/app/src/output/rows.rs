@@ -36,7 +36,7 @@ impl EventRows {
         let mut row = Row::new(rows, self.format, &EVENT_COLUMNS);
         row.number(event.time);
         row.plain(ball);
-        row.word(kind(event.kind));
+        row.word(kind_name(event.kind));
         row.plain(self.surfaces.get(event.surface).map_or("", String::as_str));
         row.optional(event.face);
         row.vector(event.position.coords.as_ref());
@@ -75,7 +75,8 @@ impl FrameRows {
     }
 }
 
-fn kind(kind: EventKind) -> &'static str {
+/// The name of a kind of event in tables and pages.
+pub fn kind_name(kind: EventKind) -> &'static str {
     match kind {
         EventKind::Impact => "impact",
         EventKind::Slide => "slide",

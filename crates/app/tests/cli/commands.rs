@@ -6,7 +6,7 @@ use crate::common::{Folder, shown};
 fn help_of_every_command() {
     let folder = Folder::with(&[]);
     insta::assert_snapshot!("help", shown(&folder.run(&["--help"])));
-    for command in ["run", "check", "schema", "materials", "completions"] {
+    for command in ["run", "accuracy", "view", "check", "schema", "materials", "completions"] {
         insta::assert_snapshot!(format!("help_{command}"), shown(&folder.run(&[command, "--help"])));
     }
 }
@@ -27,6 +27,8 @@ fn usage_errors_are_2() {
         &["run", "scene.toml", "--events", "-", "--frames", "-"],
         &["run", "scene.toml", "--events", "x.csv", "--frames", "x.csv"],
         &["check", "scene.xyz"],
+        &["accuracy", "scene.toml", "--target-error", "0"],
+        &["accuracy", "scene.toml", "--csv", "-", "--plot", "-"],
         &["completions", "csh"],
     ] {
         let output = folder.run(args);

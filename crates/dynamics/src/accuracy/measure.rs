@@ -357,11 +357,13 @@ impl Stage<'_> {
                 continue;
             }
             let stepping = variant.parameter() == Parameter::Step;
+            // What a linear f is off by depends on where in a step the impacts lie: no line, but a band.
+            let even = stepping && variant != Variant::Rk4LinearF;
             let fit = |error: fn(&Errors) -> f64, step: fn(&Measurement) -> f64| {
                 let step = |m: &Measurement| if stepping { m.value } else { step(m) };
                 let points: Vec<_> =
                     measurements.iter().map(|m| (step(m), error(&m.errors), m.shares.rounding)).collect();
-                order(if fits { &points } else { &[] }, stepping)
+                order(if fits { &points } else { &[] }, even)
             };
             let flight_order = fit(|e| e.flight, |m| m.flight_step);
             let order = fit(|e| e.position, |m| m.step);

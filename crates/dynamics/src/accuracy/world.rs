@@ -205,7 +205,7 @@ impl World {
         let index = |v: &Vector3<f64>| v.map(|x| (x / self.cell).floor());
         let (a, b) = (index(low), index(high));
         let count = (b - a).add_scalar(1.0).product();
-        if !(count <= MAX_CELLS as f64) {
+        if count.is_nan() || count > MAX_CELLS as f64 {
             return None;
         }
         let range = |axis: usize| (a[axis] as i64)..=(b[axis] as i64);

@@ -2,10 +2,10 @@
 
 use super::super::{Bound, Case, Figure, Worst};
 use super::rows::{Tally, rows};
-use super::solids::cube;
 use super::start::bits_from;
 use crate::exact::{Exact, exact};
 use crate::random::Random;
+use crate::solids::cube;
 use crate::stage::{Run, Stage, coulomb, rough, smooth};
 use carom_dynamics::error::SceneError;
 use carom_dynamics::events::Ending;

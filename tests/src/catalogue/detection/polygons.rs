@@ -1,10 +1,10 @@
 //! H9 and H10: quadrilaterals off one plane, and concave polygons.
 
 use super::super::{Bound, Case, Figure};
-use super::solids::Solid;
 use crate::exact::exact;
 use crate::nasty::{neighbours2, ulps};
 use crate::random::Random;
+use crate::solids::Solid;
 use crate::stage::{Stage, smooth};
 use carom_dynamics::events::Event;
 use carom_geometry::error::PolygonError;

@@ -2,9 +2,9 @@
 
 use super::super::{Bound, Case, Figure};
 use super::rows::{Tally, rows};
-use super::solids::{Solid, cube};
 use super::start::{bits, keep_events_apart};
 use crate::random::Random;
+use crate::solids::{Solid, cube};
 use crate::stage::{Run, Stage, coulomb, rough, smooth};
 use carom_dynamics::events::Ending;
 use carom_geometry::rounding::UNIT_ROUNDOFF;

@@ -1,9 +1,9 @@
 //! H5 and H6: hits on edges and vertices, and no way out of a closed mesh.
 
 use super::super::{Bound, Case, Figure, Worst};
-use super::solids::{Solid, icosphere, moved, triangles};
 use super::start::{bits, keep_events_apart};
 use crate::random::Random;
+use crate::solids::{Solid, icosphere, moved, triangles};
 use crate::stage::{Run, Stage, smooth};
 use carom_dynamics::events::Ending;
 use carom_geometry::predicates::{Sign, orient3d};

@@ -3,6 +3,8 @@
 mod picture;
 mod table;
 
+pub use table::setting;
+
 use super::print;
 use crate::cli::AccuracyArgs;
 use crate::error::AppError;
@@ -71,10 +73,7 @@ fn answer(scene: &Scene, effort: &Effort, report: &Report, target: f64) -> Resul
     let again = once_more(scene, effort, best).map_err(|e| AppError::Internal(e.to_string()))?;
     let error = again.errors.position;
     if error > target || again.counters != best.counters {
-        return Err(AppError::Target(format!(
-            "{} was off by {error:.1e} m when it was run again",
-            table::setting(best)
-        )));
+        return Err(AppError::Target(format!("{} was off by {error:.1e} m when it was run again", setting(best))));
     }
     let cost = match best.cost {
         Some(cost) => format!("{} for a second of a ball", table::time(cost.per_second)),
@@ -82,7 +81,7 @@ fn answer(scene: &Scene, effort: &Effort, report: &Report, target: f64) -> Resul
     };
     Ok(format!(
         "cheapest for {target:e} m: {}, off by {error:.1e} m at most, {cost}; run again, it was the same",
-        table::setting(best)
+        setting(best)
     ))
 }
 

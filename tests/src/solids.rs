@@ -4,10 +4,10 @@ use nalgebra::{Point3, Vector3};
 use std::collections::BTreeMap;
 
 /// Vertices and faces.
-pub(super) type Solid = (Vec<Point3<f64>>, Vec<[u32; 3]>);
+pub type Solid = (Vec<Point3<f64>>, Vec<[u32; 3]>);
 
 /// The icosahedron, each face cut into 4^`level`, its vertices on the unit sphere; closed, faces outwards.
-pub(super) fn icosphere(level: usize) -> Solid {
+pub fn icosphere(level: usize) -> Solid {
     let golden = (1.0 + 5f64.sqrt()) / 2.0;
     let corners = [
         [-1.0, golden, 0.0],
@@ -68,17 +68,17 @@ pub(super) fn icosphere(level: usize) -> Solid {
 }
 
 /// Every vertex moved.
-pub(super) fn moved((vertices, faces): &Solid, place: impl Fn(&Point3<f64>) -> Point3<f64>) -> Solid {
+pub fn moved((vertices, faces): &Solid, place: impl Fn(&Point3<f64>) -> Point3<f64>) -> Solid {
     (vertices.iter().map(place).collect(), faces.clone())
 }
 
 /// The corners of the faces.
-pub(super) fn triangles((vertices, faces): &Solid) -> Vec<[Point3<f64>; 3]> {
+pub fn triangles((vertices, faces): &Solid) -> Vec<[Point3<f64>; 3]> {
     faces.iter().map(|f| f.map(|v| vertices[v as usize])).collect()
 }
 
 /// The box [-1, 1]^3 as twelve triangles, faces outwards.
-pub(super) fn cube() -> Solid {
+pub fn cube() -> Solid {
     let corner = |i: u32| {
         let side = |bit: u32| if i & bit == 0 { -1.0 } else { 1.0 };
         Point3::new(side(1), side(2), side(4))
