@@ -1,4 +1,4 @@
-//! The project's own tasks: `cargo xtask verify`, `cargo xtask readme` and `cargo xtask soak`.
+//! The project's own tasks: `cargo xtask verify`, `cargo xtask readme`, `cargo xtask accuracy` and `cargo xtask soak`.
 //!
 //! This crate has no dependencies on purpose: it builds in a second on a fresh clone, and no feature of another crate
 //! can make cargo rebuild it while it runs.
@@ -7,6 +7,7 @@ mod project;
 mod log;
 mod blocks;
 mod commands;
+mod accuracy;
 mod readme;
 mod soak;
 mod steps;
@@ -18,7 +19,7 @@ use std::process::ExitCode;
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
 /// The tasks, as the README may name them.
-const TASKS: [&str; 3] = ["verify", "readme", "soak"];
+const TASKS: [&str; 4] = ["verify", "readme", "accuracy", "soak"];
 
 const HELP: &str = "\
 Usage: cargo xtask TASK
@@ -28,6 +29,7 @@ Tasks:
   verify --only STEP[,STEP]   only these steps
   verify --list               the steps, and what each checks
   readme                      rewrites the generated blocks of README.md
+  accuracy                    measures what accuracy costs in three scenes; plots, tables, README
   soak --bounces N            bounces balls N times (1e8 say) in scenes of every kind and reports escapes, gains and stalls
   soak --shots M              shoots M points and M balls from inside closed meshes at their edges and vertices
 
@@ -44,6 +46,7 @@ fn main() -> ExitCode {
             Err(error) => return usage(&error.to_string()),
         },
         ["readme"] => readme::rewrite(),
+        ["accuracy"] => accuracy::run(),
         ["soak", ref rest @ ..] => soak::run(rest),
         ["help" | "--help" | "-h"] => {
             println!("{HELP}");

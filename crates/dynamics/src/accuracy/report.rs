@@ -3,6 +3,7 @@
 use super::compare::{Ends, Errors, EulerLaws, Shares};
 use super::course::Reach;
 use super::fit::Order;
+use super::resolution::Original;
 use super::variant::{Approach, Variant};
 use crate::counters::Counters;
 use crate::scene::Method;
@@ -91,6 +92,19 @@ pub struct Sweep {
     pub order: Order,
 }
 
+/// The scene on finer meshes of the same surfaces, beside the finest: the share of the discretisation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Resolution {
+    /// Faces of all meshes.
+    pub faces: usize,
+    /// Distance of the positions from those on the finest meshes before the first impacts on those are over by a sample, in m.
+    pub first_bounce: f64,
+    /// The same over all that is compared, in m.
+    pub position: f64,
+    /// Difference of the times of the first impact, in s; none if one has none.
+    pub first_impact: Option<f64>,
+}
+
 /// What a user should know before reading the numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Remark {
@@ -124,6 +138,13 @@ pub enum Remark {
     },
     /// The exact flight is not offered, because something other than gravity acts.
     NoExactFlight,
+    /// What a mesh is taken to be cut from.
+    Discretised {
+        /// The surface, by its index in the scene.
+        surface: usize,
+        /// What it is taken for.
+        original: Original,
+    },
     /// A method whose flights are exact under gravity alone.
     ExactFlights(Variant),
     /// A bounce lowers the order.
@@ -167,6 +188,17 @@ impl fmt::Display for Remark {
                 };
                 write!(f, "ball {ball}: the reference ends at {at:.4} s: {why}; so does the comparison")
             }
+            Self::Discretised { surface, original } => match original {
+                Original::Sphere { radius, .. } => {
+                    write!(f, "surface {surface}: its vertices lie on a sphere of radius {radius:.4} m; refined, they stay on it")
+                }
+                Original::Smooth => write!(
+                    f,
+                    "surface {surface}: refined as the smooth surface through its vertices and their normals (point-normal triangles); \
+                     if it was never smooth, the numbers of the discretisation mean nothing"
+                ),
+                Original::Itself => write!(f, "surface {surface}: a mesh with sharp edges, taken for what it is: no discretisation"),
+            },
             Self::NoExactFlight => f.write_str("`exact` is not offered: something other than uniform gravity acts"),
             Self::ExactFlights(variant) => write!(
                 f,
@@ -210,6 +242,8 @@ pub struct Report {
     pub ends: Option<Ends>,
     /// The methods.
     pub sweeps: Vec<Sweep>,
+    /// The surfaces at several resolutions, from the given one on; empty if nothing in the scene is a mesh of something smooth.
+    pub resolutions: Vec<Resolution>,
     /// What else there is to know.
     pub remarks: Vec<Remark>,
 }

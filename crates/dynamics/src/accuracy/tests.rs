@@ -8,7 +8,8 @@ use crate::surface::{Material, Shape, Surface};
 use carom_geometry::plane::Plane;
 use nalgebra::{Point3, Vector3};
 
-const COUNTED: Effort = Effort { balls: 1, octaves: 6, decades: 10, repeats: 0, variants: &Variant::ALL };
+const COUNTED: Effort =
+    Effort { balls: 1, octaves: 6, decades: 10, repeats: 0, variants: &Variant::ALL, resolutions: true };
 
 fn scene(height: f64, velocity: Vector3<f64>, duration: f64) -> Scene {
     let material = Material { restitution: Restitution::new(0.75).unwrap(), friction: Friction::None };

@@ -92,7 +92,7 @@ fn once_more(
     best: &Measurement,
 ) -> Result<Measurement, carom_dynamics::error::SceneError> {
     let one: &'static [Variant] = Variant::ALL.iter().find(|v| **v == best.variant).map_or(&[], std::slice::from_ref);
-    let effort = Effort { repeats: 0, variants: one, ..*effort };
+    let effort = Effort { repeats: 0, variants: one, resolutions: false, ..*effort };
     let report = measure(scene, &effort, &mut || 0.0)?;
     let found = report.measurements().find(|m| m.value == best.value).cloned();
     Ok(found.unwrap_or_else(|| best.clone()))

@@ -60,6 +60,13 @@ pub fn text(report: &Report, name: &str, scene: &Scene) -> String {
         );
     }
     let _ = writeln!(text, "What each digit costs: no other is both cheaper and better\n\n{}", front(report).text());
+    if !report.resolutions.is_empty() {
+        let _ = writeln!(
+            text,
+            "Discretisation of the surfaces: the same scene on its meshes and on finer ones, beside the finest\n\n{}",
+            resolutions(report).text()
+        );
+    }
     if let Some(ends) = ends(report) {
         let _ = writeln!(text, "At the end: what means something when positions do not\n\n{}", ends.text());
     }
@@ -218,6 +225,14 @@ fn front(report: &Report) -> Columns {
     table
 }
 
+fn resolutions(report: &Report) -> Columns {
+    let mut table = Columns::new(["faces", "first bounce, m", "position, m", "first impact, s"]);
+    for r in &report.resolutions {
+        table.push([r.faces.to_string(), error(r.first_bounce), error(r.position), optional(r.first_impact)]);
+    }
+    table
+}
+
 /// The reference beside the finest run of each method.
 fn ends(report: &Report) -> Option<Columns> {
     let reference = report.ends?;
@@ -249,13 +264,11 @@ pub fn csv(report: &Report) -> String {
         let only =
             |parameter| if m.variant.parameter() == parameter { format!("{:?}", m.value) } else { String::new() };
         let optional = |x: Option<f64>| x.map_or(String::new(), |x| format!("{x:?}"));
-        // A name with a comma is quoted.
         let name = m.variant.name();
-        let name = if name.contains(',') { format!("\"{name}\"") } else { name.to_owned() };
         let (e, s) = (&m.errors, &m.shares);
         let _ = write!(
             text,
-            "{name},{},{},{:?},{:?},{},{},{},{},{:?},{:?},{:?},{:?},{:?},{:?},{:?},{},{},{:?},{:?},{:?}",
+            "{name},{},{},{:?},{:?},{},{},{},{},{:?},{:?},{:?},{:?},{:?},{:?},{:.6e},{},{},{:?},{:?},{:?}",
             only(Parameter::Step),
             only(Parameter::Tolerance),
             e.position,
