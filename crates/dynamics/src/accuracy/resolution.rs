@@ -108,6 +108,7 @@ pub fn refined(mesh: &Mesh, original: &Original, level: u32) -> Option<Mesh> {
             }
             _ => p,
         };
+        let mut inside: HashMap<(usize, usize), u32> = HashMap::new();
         // Row i, column j: weights (n - i, i - j, j) / n of the corners.
         let mut index = |i: usize, j: usize| -> u32 {
             let weights = [n - i, i - j, j];
@@ -120,7 +121,7 @@ pub fn refined(mesh: &Mesh, original: &Original, level: u32) -> Option<Mesh> {
                 (vertices.len() - 1) as u32
             };
             match weights.iter().position(|w| *w == 0) {
-                None => add(at(weights)),
+                None => *inside.entry((i, j)).or_insert_with(|| add(at(weights))),
                 Some(away) => {
                     // A point of an edge is made once, by the face that comes to it first.
                     let [p, q] = [(away + 1) % 3, (away + 2) % 3];
