@@ -56,3 +56,4 @@ pub mod sliding;
 pub mod observer;
 pub mod simulate;
 pub mod run;
+pub mod explain;
