@@ -33,6 +33,11 @@
 //! # }
 //! ```
 
+/// The geometry that surfaces are made of, in the version that every signature uses.
+pub use carom_geometry as geometry;
+/// The crate of vectors and points that every signature uses, in the version it uses.
+pub use nalgebra;
+
 // In dependency order: a module imports only from those above it.
 pub mod error;
 pub mod tolerance;

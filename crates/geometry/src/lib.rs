@@ -26,6 +26,9 @@
 //! # }
 //! ```
 
+/// The crate of vectors and points that every signature uses, in the version it uses.
+pub use nalgebra;
+
 // In dependency order: a module imports only from those above it.
 pub mod error;
 pub mod rounding;

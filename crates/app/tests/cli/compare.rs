@@ -3,7 +3,8 @@
 use crate::common::Folder;
 use std::path::Path;
 
-const EXPECTED: &str = "# why\nball,kind,n,t,x,y,z,vx,vy,vz,dt,dx,dv\n0,impact,1,1.0,0,0,0,0,0,4,1e-9,1e-9,1e-9\n0,impacts,1,,,,,,,,,,\n";
+const EXPECTED: &str =
+    "# why\nball,kind,n,t,x,y,z,vx,vy,vz,dt,dx,dv\n0,impact,1,1.0,0,0,0,0,0,4,1e-9,1e-9,1e-9\n0,impacts,1,,,,,,,,,,\n";
 const ACTUAL: &str = "t,ball,kind,x,y,z,vx,vy,vz\n1.0,0,impact,0,0,0,0,0,4\n";
 
 /// Exit code and all that is said.
@@ -18,7 +19,8 @@ fn compare(expected: &str, actual: &str, more: &[&str]) -> (i32, String) {
 fn carom_passes_the_conformance_pack() {
     let pack = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../conformance");
     let scenes = std::fs::read_dir(pack.join("scenes")).expect("the pack has scenes");
-    let scenes = scenes.map(|entry| entry.expect("an entry").path()).filter(|p| p.extension().is_some_and(|e| e == "toml"));
+    let scenes =
+        scenes.map(|entry| entry.expect("an entry").path()).filter(|p| p.extension().is_some_and(|e| e == "toml"));
     let (mut count, folder) = (0, Folder::with(&[]));
     for scene in scenes {
         let name = scene.file_stem().expect("a name").to_string_lossy().into_owned();
