@@ -38,6 +38,11 @@ pub enum Command {
     /// Prints a short summary on standard error. Events, frames and a summary in JSON are written where asked for; a file
     /// appears only once it is complete.
     Run(RunArgs),
+    /// Tell which effects a scene has, which it would need, what each changes and what it costs
+    ///
+    /// Each effect that is on is taken out, each that is off is put in with the data of the scene (and air at 20 C), and the first flights and
+    /// impacts are compared with those of the scene as it is, and with a prediction by formula. What is off and would matter comes first.
+    Explain(ExplainArgs),
     /// Show a scene: write a page that plays it in any browser
     ///
     /// Simulates the scene and writes one HTML file that needs nothing else, not even a network: surfaces and balls in 3-D, to
@@ -69,6 +74,8 @@ pub enum Command {
     Compare(CompareArgs),
     /// Print the JSON schema of scene files, for editors
     Schema,
+    /// Print the balls that scenes can call by name, with the sources of what is known of them
+    Balls(BallsArgs),
     /// Print tables of restitution and friction, with their sources
     Materials(MaterialsArgs),
     /// Print the completions of a shell
@@ -126,6 +133,26 @@ pub struct SimulationArgs {
     /// Print nothing but errors
     #[arg(long, short)]
     pub quiet: bool,
+}
+
+/// What `explain` takes.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  carom explain room.toml
+  carom explain room.toml --tolerance 0.001 --json")]
+pub struct ExplainArgs {
+    /// The scene: a .toml or .json file
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub scene: PathBuf,
+    /// The share of a time, a speed or a way by which an effect must change something to matter
+    #[arg(long, value_name = "SHARE", default_value = "0.01", value_parser = share)]
+    pub tolerance: f64,
+    /// Read the balls from FILE instead of the scene, as `run` does
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub balls: Option<PathBuf>,
+    /// Print JSON, with all digits
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// What `view` takes.
@@ -244,6 +271,14 @@ pub struct CompareArgs {
     pub loosen: f64,
 }
 
+/// What `balls` takes.
+#[derive(Debug, Args)]
+pub struct BallsArgs {
+    /// Print JSON instead of a table
+    #[arg(long)]
+    pub json: bool,
+}
+
 /// What `materials` takes.
 #[derive(Debug, Args)]
 pub struct MaterialsArgs {
@@ -284,4 +319,10 @@ fn factor(word: &str) -> Result<f64, String> {
         Ok(x) if x.is_finite() && x > 0.0 => Ok(x),
         _ => Err("a factor is a finite number > 0".to_owned()),
     }
+}
+
+/// Reads a finite number above 0.
+fn share(word: &str) -> Result<f64, String> {
+    let share: f64 = word.trim().parse().map_err(|_| format!("`{word}` is not a number"))?;
+    if share.is_finite() && share > 0.0 { Ok(share) } else { Err("the share must be finite and > 0".to_owned()) }
 }

@@ -28,6 +28,7 @@ mod mesh_file;
 mod model;
 mod output;
 pub mod plot;
+mod presets;
 mod replay;
 mod scene;
 mod stage;
@@ -49,12 +50,14 @@ pub fn main() -> ExitCode {
     let result = match &cli.command {
         Command::Init(args) => commands::init::init(args),
         Command::Run(args) => commands::run::run(args),
+        Command::Explain(args) => commands::explain::explain(args),
         Command::View(args) => commands::view::view(args),
         Command::Plot(args) => commands::plot::plot(args),
         Command::Export(args) => commands::export::export(args),
         Command::Check(args) => commands::check::check(args),
         Command::Compare(args) => commands::compare::compare(args),
         Command::Schema => commands::schema::schema(),
+        Command::Balls(args) => commands::balls::balls(args),
         Command::Materials(args) => commands::materials::materials(args),
         Command::Completions(args) => commands::completions::completions(args),
         Command::Man(args) => commands::man::man(args),

@@ -89,3 +89,4 @@ pub mod sliding;
 pub mod observer;
 pub mod simulate;
 pub mod run;
+pub mod explain;

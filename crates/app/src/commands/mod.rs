@@ -1,8 +1,10 @@
 //! The commands, one file each.
 
+pub mod balls;
 pub mod check;
 pub mod compare;
 pub mod completions;
+pub mod explain;
 pub mod export;
 pub mod init;
 pub mod man;

@@ -46,7 +46,7 @@ impl Files {
         let [events, frames, summary] = [open(&args.events)?, open(&args.frames)?, open(&args.summary)?];
         clear_when_interrupted([&events, &frames, &summary])?;
         let events = events.zip(recording.events.as_ref()).map(|(target, form)| Sheet::events(target, form, scene));
-        let frames = frames.zip(recording.frames.as_ref()).map(|(target, form)| Sheet::frames(target, form));
+        let frames = frames.zip(recording.frames.as_ref()).map(|(target, form)| Sheet::frames(target, form, scene));
         Ok(Self { events: events.transpose()?, frames: frames.transpose()?, summary })
     }
 
@@ -90,20 +90,17 @@ impl Sheet {
                 target.write(table.header().as_bytes())?;
                 Ok(Self::Rows(target))
             }
-            Form::Columns => {
-                let names = scene.surfaces.iter().map(|surface| surface.name.as_str());
-                parquet::Table::events(target, names).map(Box::new).map(Self::Columns)
-            }
+            Form::Columns => parquet::Table::events(target, scene).map(Box::new).map(Self::Columns),
         }
     }
 
-    fn frames(mut target: Target, form: &Form<FrameRows>) -> Result<Self, AppError> {
+    fn frames(mut target: Target, form: &Form<FrameRows>, scene: &Scene) -> Result<Self, AppError> {
         match form {
             Form::Rows(table) => {
                 target.write(table.header().as_bytes())?;
                 Ok(Self::Rows(target))
             }
-            Form::Columns => parquet::Table::frames(target).map(Box::new).map(Self::Columns),
+            Form::Columns => parquet::Table::frames(target, scene).map(Box::new).map(Self::Columns),
         }
     }
 

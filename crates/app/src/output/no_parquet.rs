@@ -4,18 +4,19 @@ use super::target::{Demand, Target};
 use crate::error::AppError;
 use carom_dynamics::events::Event;
 use carom_dynamics::observer::Frame;
+use carom_dynamics::scene::Scene;
 
 /// A table that cannot be.
 pub enum Table {}
 
 impl Table {
     /// Refuses.
-    pub fn events<'a>(target: Target, _: impl Iterator<Item = &'a str>) -> Result<Self, AppError> {
-        Self::frames(target)
+    pub fn events(target: Target, scene: &Scene) -> Result<Self, AppError> {
+        Self::frames(target, scene)
     }
 
     /// Refuses.
-    pub fn frames(target: Target) -> Result<Self, AppError> {
+    pub fn frames(target: Target, _: &Scene) -> Result<Self, AppError> {
         Err(AppError::Usage(format!("{}: this carom was built without its feature `parquet`", target.shown())))
     }
 

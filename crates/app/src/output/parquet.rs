@@ -1,10 +1,12 @@
 //! Events and frames as Parquet: the columns of the other forms, with types.
 
-use super::rows::{EVENT_COLUMNS, FRAME_COLUMNS, kind_name, motion_name};
+use super::rows::{event_columns, frame_columns, kind_name, motion_name};
 use super::target::{Demand, Target};
 use crate::error::AppError;
 use carom_dynamics::events::Event;
 use carom_dynamics::observer::Frame;
+use carom_dynamics::scene::Scene;
+use nalgebra::Vector3;
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
 use parquet::file::properties::WriterProperties;
@@ -33,20 +35,22 @@ pub struct Table {
     rows: usize,
     /// The names of the surfaces.
     surfaces: Vec<ByteArray>,
+    /// Whether angular velocities are told.
+    spins: bool,
 }
 
 impl Table {
-    /// A table of events, of a scene with surfaces of these names.
-    pub fn events<'a>(target: Target, surfaces: impl Iterator<Item = &'a str>) -> Result<Self, AppError> {
-        Self::new(target, "events", &EVENT_COLUMNS, surfaces.map(ByteArray::from).collect())
+    /// A table of the events of a scene.
+    pub fn events(target: Target, scene: &Scene) -> Result<Self, AppError> {
+        Self::new(target, "events", event_columns(scene), scene)
     }
 
-    /// A table of frames.
-    pub fn frames(target: Target) -> Result<Self, AppError> {
-        Self::new(target, "frames", &FRAME_COLUMNS, Vec::new())
+    /// A table of the frames of a scene.
+    pub fn frames(target: Target, scene: &Scene) -> Result<Self, AppError> {
+        Self::new(target, "frames", frame_columns(scene), scene)
     }
 
-    fn new(target: Target, name: &str, names: &[&str], surfaces: Vec<ByteArray>) -> Result<Self, AppError> {
+    fn new(target: Target, name: &str, names: &[&str], scene: &Scene) -> Result<Self, AppError> {
         let shown = target.shown().to_owned();
         let (mut schema, mut columns) = (format!("message {name} {{"), Vec::new());
         let mut properties = WriterProperties::builder()
@@ -70,13 +74,15 @@ impl Table {
             SerializedFileWriter::new(target, schema, Arc::new(properties.build()))
         };
         let writer = make().map_err(|error| refused(&shown, error))?;
-        Ok(Self { writer, shown, columns, rows: 0, surfaces })
+        let surfaces = scene.surfaces.iter().map(|surface| ByteArray::from(surface.name.as_str())).collect();
+        Ok(Self { writer, shown, columns, rows: 0, surfaces, spins: scene.spins() })
     }
 
     /// Appends the events of a ball.
     pub fn push_events(&mut self, ball: usize, events: &[Event]) -> Result<Demand, AppError> {
         for event in events {
             let surface = self.surfaces.get(event.surface).cloned().unwrap_or_default();
+            let spins = self.spins;
             let mut row = self.row();
             row.number(event.time);
             row.count(ball as i64);
@@ -86,6 +92,7 @@ impl Table {
             for v in [&event.position.coords, &event.normal, &event.velocity_in, &event.velocity] {
                 v.iter().for_each(|&x| row.number(x));
             }
+            row.spin(event.spin, spins);
             self.end_row()?;
         }
         Ok(Demand::Open)
@@ -94,6 +101,7 @@ impl Table {
     /// Appends the frames of a ball.
     pub fn push_frames(&mut self, ball: usize, frames: &[Frame]) -> Result<Demand, AppError> {
         for frame in frames {
+            let spins = self.spins;
             let mut row = self.row();
             row.number(frame.time);
             row.count(ball as i64);
@@ -101,6 +109,7 @@ impl Table {
                 v.iter().for_each(|&x| row.number(x));
             }
             row.word(motion_name(frame.motion).into());
+            row.spin(frame.spin, spins);
             self.end_row()?;
         }
         Ok(Demand::Open)
@@ -177,6 +186,13 @@ impl Row<'_> {
     fn number(&mut self, x: f64) {
         if let Some(Column::Number(values)) = self.0.next() {
             values.push(x);
+        }
+    }
+
+    /// 0 of a ball that does not turn beside others that do.
+    fn spin(&mut self, spin: Option<Vector3<f64>>, is_told: bool) {
+        if is_told {
+            spin.unwrap_or_else(Vector3::zeros).iter().for_each(|&x| self.number(x));
         }
     }
 

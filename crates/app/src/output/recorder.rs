@@ -31,8 +31,8 @@ impl Recording {
         let events = args.events.as_deref().map(Form::of).transpose()?;
         let frames = args.frames.as_deref().map(Form::of).transpose()?;
         Ok(Self {
-            events: events.map(|form| form.map(|format| EventRows::new(format, &scene.surfaces))),
-            frames: frames.map(|form| form.map(FrameRows::new)),
+            events: events.map(|form| form.map(|format| EventRows::new(format, scene))),
+            frames: frames.map(|form| form.map(|format| FrameRows::new(format, scene))),
             fps: args.fps,
             duration: scene.duration,
         })
@@ -126,9 +126,7 @@ impl Observer for FrameRecorder<'_> {
         let frames = &self.sampler.frames()[self.written..];
         self.written += frames.len();
         match &mut self.rows {
-            Rows::Text(table, text) => {
-                frames.iter().for_each(|f| table.push(text, self.ball, f.time, &f.state, f.motion));
-            }
+            Rows::Text(table, text) => frames.iter().for_each(|frame| table.push(text, self.ball, frame)),
             Rows::Items(items) => items.extend(frames),
         }
     }

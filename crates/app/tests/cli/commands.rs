@@ -6,7 +6,22 @@ use crate::common::{Folder, shown};
 fn help_of_every_command() {
     let folder = Folder::with(&[]);
     insta::assert_snapshot!("help", shown(&folder.run(&["--help"])));
-    for command in ["init", "run", "view", "plot", "export", "check", "schema", "materials", "completions", "man"] {
+    let commands = [
+        "init",
+        "run",
+        "view",
+        "plot",
+        "export",
+        "explain",
+        "check",
+        "compare",
+        "schema",
+        "balls",
+        "materials",
+        "completions",
+        "man",
+    ];
+    for command in commands {
         insta::assert_snapshot!(format!("help_{command}"), shown(&folder.run(&[command, "--help"])));
     }
 }
