@@ -237,7 +237,7 @@ pub struct PlotArgs {
     /// End at this time, in s [default: when the balls have come to rest]
     #[arg(long, value_name = "TIME")]
     pub to: Option<f64>,
-    /// A scene (.toml, .json) or a table of events (.csv, .jsonl)
+    /// A scene (.toml, .json) or a table of events (.csv)
     #[arg(value_name = "EVENTS-OR-SCENE", value_hint = ValueHint::FilePath)]
     pub file: PathBuf,
     /// How to simulate a scene.
