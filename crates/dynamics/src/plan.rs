@@ -8,6 +8,7 @@ use crate::effects::spin_decay::SpinDecay;
 use crate::error::{SceneError, ValueError, require};
 use crate::forces::Forces;
 use crate::integrators::adaptive::Adaptive;
+use crate::integrators::damped::Damped;
 use crate::integrators::{Integrator, Stepping};
 use crate::scene::{Method, Scene};
 use crate::surface::{Material, Shape};
@@ -206,13 +207,18 @@ impl Plan {
         self.surfaces.iter().map(of_ball).collect()
     }
 
-    pub(crate) fn integrator(&self) -> Integrator {
+    pub(crate) fn integrator(&self, forces: &Forces) -> Integrator {
         match self.method {
             Method::Exact => Integrator::Exact,
             Method::Euler { step } => Integrator::Stepping(Stepping::Euler, step),
             Method::SemiImplicitEuler { step } => Integrator::Stepping(Stepping::SemiImplicitEuler, step),
             Method::Rk4 { step } => Integrator::Stepping(Stepping::Rk4, step),
-            Method::Adaptive { tolerance } => Integrator::Adaptive(Adaptive::new(tolerance)),
+            Method::Adaptive { tolerance } => {
+                let rate = if let [flow] = forces.flows { flow.rate(&forces.body) } else { None };
+                rate.map_or(Integrator::Adaptive(Adaptive::new(tolerance)), |rate| {
+                    Integrator::Damped(Damped::new(tolerance, rate))
+                })
+            }
         }
     }
 }

@@ -50,6 +50,9 @@ pub fn run(args: &RunArgs) -> Result<(), AppError> {
     let summary = tally.finish(start.elapsed());
     files.finish(&summary.json())?;
     if !args.input.how.quiet {
+        if let Some(choice) = &loaded.choice {
+            say(&super::explain::chosen(choice));
+        }
         say(&summary.text());
     }
     summary.guarded().map_or(Ok(()), |message| Err(AppError::Guard(message)))

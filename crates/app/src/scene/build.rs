@@ -2,8 +2,8 @@
 
 use super::air::Air;
 use super::file::{
-    FallingTable, FrictionTable, GripTable, Integrator, MaterialTable, MethodTable, RestTable, RestitutionOf,
-    RestitutionTable, SceneFile,
+    EffectsShare, EffectsTable, FallingTable, FrictionTable, GripTable, Integrator, MaterialTable, MethodTable,
+    RestTable, RestitutionOf, RestitutionTable, SceneFile,
 };
 use super::problem::Problem;
 use super::shapes;
@@ -65,6 +65,12 @@ impl Builder<'_> {
         if !(file.duration.is_finite() && file.duration > 0.0) {
             let message = format!("duration is {:?}, but must be finite and > 0, in s", file.duration);
             self.refuse(at!["duration"], Problem::new(message));
+        }
+        if let Some(EffectsTable::Share(EffectsShare { auto })) = file.effects
+            && !(auto.is_finite() && auto > 0.0)
+        {
+            let message = format!("auto is {auto:?}, but must be a finite share > 0");
+            self.refuse(at!["effects", "auto"], Problem::new(message));
         }
         let gravity = file.gravity.and_then(|g| self.accept(at!["gravity"], Gravity::uniform(Vector3::from(g))));
         let air = file.air.as_ref().map_or_else(Air::default, |air| self.air(air));

@@ -20,6 +20,9 @@ pub struct SceneFile {
     pub duration: f64,
     /// The acceleration of gravity, in m/s^2, such as [0, 0, -9.81]. Without this key there is no gravity.
     pub gravity: Option<[f64; 3]>,
+    /// Which effects of the air are simulated: those that the scene gives, or "auto": just those whose omission would change a flight
+    /// time, a speed or a way by more than 1 %, or { auto = share } for another share. What is left out is told.
+    pub effects: Option<EffectsTable>,
     /// The air and its resistance. Without this table the balls fly in a vacuum.
     pub air: Option<AirTable>,
     /// The materials that surfaces are made of, by name.
@@ -35,6 +38,32 @@ pub struct SceneFile {
     pub rest: Option<RestTable>,
     /// How flights are computed. Without this table: exactly, wherever the scene allows it.
     pub method: Option<MethodTable>,
+}
+
+/// Which effects are simulated: "auto", or { auto = share }.
+#[derive(Debug, Clone, Copy, JsonSchema)]
+#[schemars(untagged)]
+pub enum EffectsTable {
+    /// Chosen to 1 %.
+    Word(EffectsWord),
+    /// Chosen to a share.
+    Share(EffectsShare),
+}
+
+/// How effects are chosen.
+#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum EffectsWord {
+    /// By what they would change.
+    Auto,
+}
+
+/// To which share effects are chosen.
+#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a table such as { auto = 0.001 }")]
+pub struct EffectsShare {
+    /// The share of a time, a speed or a way by which what is left out may change it, greater than 0.
+    pub auto: f64,
 }
 
 /// The air, and what it does to the balls.

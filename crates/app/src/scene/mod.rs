@@ -14,17 +14,23 @@ mod tree;
 use crate::balls::{self as ball_lists, BallList};
 use crate::error::AppError;
 use carom_dynamics::error::SceneError;
+use carom_dynamics::explain::choice::{Choice, choose};
 use carom_dynamics::scene::Scene;
-use file::SceneFile;
+use file::{EffectsShare, EffectsTable, EffectsWord, SceneFile};
 use parse::Notation;
 use problem::Problem;
 use std::path::Path;
 use tree::{Node, Step};
 
+/// To what share effects are chosen if the scene does not say.
+const PERCENT: f64 = 0.01;
+
 /// A scene, and what it takes to say where in its file something is.
 pub struct Loaded {
     /// The scene.
     pub scene: Scene,
+    /// How its effects were chosen, if they were.
+    pub choice: Option<Choice>,
     source: Source,
     balls: BallOrigin,
 }
@@ -118,7 +124,14 @@ pub fn load(path: &Path, balls: Option<&Path>) -> Result<Loaded, AppError> {
         scene.balls = list.balls.clone();
         origin = BallOrigin::List(list);
     }
-    Ok(Loaded { scene, source: Source { path: shown, text, tree }, balls: origin })
+    let loaded = Loaded { scene, choice: None, source: Source { path: shown, text, tree }, balls: origin };
+    let tolerance = match file.effects {
+        None => return Ok(loaded),
+        Some(EffectsTable::Word(EffectsWord::Auto)) => PERCENT,
+        Some(EffectsTable::Share(EffectsShare { auto })) => auto,
+    };
+    let choice = choose(&loaded.scene, tolerance).map_err(|error| loaded.refuse(&error))?;
+    Ok(Loaded { scene: choice.scene.clone(), choice: Some(choice), ..loaded })
 }
 
 /// The keys and types of a scene, or all that is wrong with them.
