@@ -172,6 +172,7 @@ mod tests {
         let from = Point3::new(-1.0, -1.0, -1.0);
         assert!(unit().is_ahead(&from, &Vector3::new(1.0, 1.0, 1.0)) && !unit().is_ahead(&from, &-Vector3::x()));
         assert!(!unit().is_ahead(&from, &Vector3::new(1.0, 3.0, 1.0)) && !unit().is_ahead(&from, &Vector3::zeros()));
+        assert!(unit().is_ahead(&Point3::new(-1.0, -4.0, -1.0), &Vector3::new(1.0, 3.0, 1.0)));
         assert!(unit().is_ahead(&unit().centre(), &Vector3::zeros()));
         assert!(!Aabb::empty().is_ahead(&from, &Vector3::new(1.0, 1.0, 1.0)));
     }

@@ -252,7 +252,7 @@ mod tests {
         let on = Point3::from((t[0].coords + t[1].coords + t[2].coords) / 3.0);
         for (above, below) in (20..56).flat_map(|j| [(j, 0), (j, j), (0, j)]) {
             let ends = [on + normal * scale(1.0, -above), on - normal * scale(1.0, -below)];
-            for k in [-200, 0, 200] {
+            for k in [-200, -100, 0, 100, 200] {
                 let big = |q: Point3<f64>| q.map(|c| scale(c, k));
                 let (t, p0, p1) = (t.map(big), big(ends[0]), big(ends[1]));
                 let SegmentHit::Hit { f, .. } = segment_hits_triangle(&p0, &p1, &t) else { continue };

@@ -187,6 +187,7 @@ fn round_up(v: f64) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::Point3;
 
     #[test]
     fn f32_is_rounded_outwards() {
@@ -214,5 +215,35 @@ mod tests {
         let (s0, s1) = clip(&[-5.0, 0.0, 0.0], &[10.0, 0.0, 0.0], 1.0).unwrap();
         assert!(s0 <= 0.4 && 0.6 <= s1 && s1 - s0 < 0.2 + 1e-14);
         assert_eq!(clip(&[-5.0, -5.0, 0.0], &[10.0, 2.0, 0.0], 1.0), None);
+    }
+
+    #[test]
+    fn everything_comes_to_lie_within_one() {
+        let bounds = Aabb::of_points(&[Point3::new(-5.0, -7.0, -6.0), Point3::new(3.0, 2.0, -1.0)]);
+        let (lo, hi) = Frame::of(&bounds).item_box(&bounds);
+        assert!(lo.iter().chain(&hi).all(|c| c.abs() <= 1.0), "{lo:?} {hi:?}");
+        assert!((0..3).any(|i| hi[i] - lo[i] > 1.0), "and not in a small part of it");
+    }
+
+    #[test]
+    fn a_query_is_larger_than_its_box_even_where_f32_has_its_sides() {
+        let frame = Frame::of(&Aabb::of_points(&[Point3::new(-1.0, -1.0, -1.0), Point3::new(1.0, 1.0, 1.0)]));
+        for c in [-0.5, 0.0, 0.5] {
+            let point = Point3::new(c, c, c);
+            let ((lo, hi), (least, most)) =
+                (frame.outer_box(&Aabb::of_points(&[point])), frame.item_box(&Aabb::of_points(&[point])));
+            assert!((0..3).all(|i| lo[i] < least[i] && most[i] < hi[i]), "{c}: {lo:?} {hi:?}");
+        }
+    }
+
+    #[test]
+    fn a_limit_in_the_part_is_the_caller_s_and_not_below_it() {
+        let part = LocalSegment::new(0.25, 0.75, [0.0; 3], [0.5; 3], 0.0);
+        for (s, limit) in [(0.375, 0.25f32), (0.5, 0.5), (0.625, 0.75)] {
+            assert!((limit.next_up()..=limit.next_up().next_up()).contains(&part.local_limit(s)), "{s}");
+        }
+        assert_eq!([0.75, 9.0, f64::INFINITY, f64::NAN].map(|s| part.local_limit(s)), [1.0; 4]);
+        assert!(part.local_limit(0.25) >= 0.0, "what is entered at the start is still of interest");
+        assert_eq!([0.2, -1.0].map(|s| part.local_limit(s)), [-1.0; 2]);
     }
 }

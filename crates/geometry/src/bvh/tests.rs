@@ -182,6 +182,8 @@ fn h13_huge_segments_lose_nothing() {
     }
     let endless = FatSegment { from: Point3::origin(), to: Point3::new(f64::INFINITY, f64::NAN, 0.0), radius: 0.0 };
     assert_eq!(collect(&tree, &endless).len(), boxes.len());
+    let nowhere = FatSegment { from: Point3::new(9.0, 9.0, 9.0), to: Point3::new(9.0, 9.0, 9.0), radius: f64::NAN };
+    assert_eq!(collect(&tree, &nowhere).len(), boxes.len());
 }
 
 #[test]
@@ -228,6 +230,12 @@ fn clusters_within_clusters_do_not_make_it_deep() {
     assert!(tree.stack <= 7 * 27 + 8, "{}", tree.stack);
     let segment = FatSegment { from: Point3::origin(), to: Point3::origin(), radius: 0.0 };
     assert_eq!(collect(&tree, &segment).len(), 4000);
+    // More is pending here than there is room for without a heap.
+    let mut met = 0;
+    tree.visit_box(&boxed(&[Point3::origin()]), |_| met += 1);
+    assert_eq!(met, 4000);
+    let mirrored: Vec<_> = boxes.iter().map(|b| boxed(&[-*b.min(), -*b.max()])).collect();
+    assert_eq!(collect(&Bvh::build(&mirrored), &segment).len(), 4000);
 }
 
 #[test]

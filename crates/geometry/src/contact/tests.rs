@@ -32,7 +32,7 @@ fn a_contact_counts_up_to_the_end_asked_for_and_from_the_start() {
 
 #[test]
 fn what_a_hold_hides_is_not_met_before_the_path_is_back() {
-    let hold = |until| Hold { normal: Vector3::z(), point: Point3::new(2.0, 1.0, 0.0), slack: 0.0, until };
+    let hold = |until| Hold { normal: Vector3::z(), point: Point3::new(2.0, 1.0, 0.0), slack: 0.0, until, face: None };
     // Believed to the letter, even when it promises too much.
     assert_eq!(contact(&hop(), &[hold(0.625)], &FLOOR, 0.0, 1.0), Some(0.625));
     assert_eq!(contact(&hop(), &[hold(f64::INFINITY)], &FLOOR, 0.0, 1.0), None);

@@ -1,6 +1,7 @@
 //! What a ball touches where several places of a mesh are near.
 
 use super::*;
+use crate::path::Path;
 
 const TOLERANCE: f64 = 1e-6;
 
@@ -9,7 +10,7 @@ fn mesh(vertices: &[[f64; 3]], faces: &[[u32; 3]]) -> Mesh {
 }
 
 fn touches(m: &Mesh, centre: [f64; 3], radius: f64) -> Vec<Touch> {
-    m.touches(&centre.into(), &Vector3::zeros(), radius, TOLERANCE, &mut Work::default())
+    m.touches(&centre.into(), &Vector3::zeros(), radius, TOLERANCE, &mut Work::default()).into_vec()
 }
 
 fn sites(m: &Mesh, centre: [f64; 3], radius: f64) -> Vec<Site> {
@@ -83,4 +84,16 @@ fn where_rounding_decides_it_is_what_the_ball_moves_to() {
     };
     assert_eq!(at(Vector3::y() * 1e-3), [Site::Face(0)]);
     assert_eq!(at(-Vector3::y() * 1e3), [RIDGE]);
+}
+
+#[test]
+fn the_work_of_a_query_is_counted() {
+    let (m, mut work) = (hinge(0.0), Work::default());
+    m.touches(&Point3::new(-0.25, 0.25, 1.0), &Vector3::zeros(), 1.0, TOLERANCE, &mut work);
+    assert_eq!((work.nodes, work.triangles, work.rounds), (1, 2, 0));
+    let path = Path::line(Point3::new(-0.25, 0.25, 3.0), Vector3::new(0.0, 0.0, -4.0));
+    let ball = MovingBall { path: &path, radius: 1.0, holds: &[] };
+    let found = m.first_contact(&ball, 1.0, |_| 0.0, &mut work);
+    assert_eq!(found, Some(FirstContact { f: 0.5, face: 0 }));
+    assert!(work.nodes == 2 && work.triangles >= 3 && work.rounds >= 3, "{work:?}");
 }
