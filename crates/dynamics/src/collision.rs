@@ -9,11 +9,13 @@ use crate::tolerance::{merge_angle_squared, rate_rounding, touch_distance};
 use arrayvec::ArrayVec;
 use carom_geometry::clearance::{Clearance, Entry};
 use carom_geometry::contact::{Hold, MovingBall};
+use carom_geometry::mesh::Fold;
 use carom_geometry::plane::Side;
 use carom_geometry::rounding::contact_doubt;
 use carom_geometry::site::{Bend, RegionBound, Site};
 use carom_geometry::sweep::Work;
 use nalgebra::{Point3, Vector3};
+use smallvec::SmallVec;
 
 /// The earliest collision of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,8 +37,8 @@ pub struct Return {
     hold: Hold,
     /// Where, and at what slope.
     pub entry: Entry,
-    /// Faces at the contact, and the f before which the ball cannot touch them again.
-    free: Option<(usize, Vec<u32>, f64)>,
+    /// Where on a mesh the contact is, and the f before which the ball cannot touch the faces there again.
+    free: Option<(usize, Site, f64)>,
 }
 
 /// The returns of one step, one for each contact.
@@ -46,12 +48,18 @@ pub type Returns = ArrayVec<Return, MAX_CONTACTS>;
 /// does not begin with the velocity adds).
 fn leaving(step: &Step, contact: &Contact) -> Clearance {
     let mut c = [0.0; 5];
+    // What the ball moves along, it leaves or enters by more than rounding or not at all.
+    let along = contact.rate == 0.0;
+    let part = |v: &Vector3<f64>, of: f64| {
+        let part = contact.normal.dot(v);
+        if along && part.abs() <= rate_rounding(of) { 0.0 } else { part }
+    };
     for (k, term) in step.path.terms().iter().enumerate() {
-        c[k + 1] = contact.normal.dot(term);
+        c[k + 1] = part(term, term.norm());
     }
     if let Some(first) = step.path.terms().first() {
         let kick = first - step.velocity[0] * step.seconds;
-        c[1] = contact.rate * step.seconds + contact.normal.dot(&kick);
+        c[1] = contact.rate * step.seconds + part(&kick, first.norm());
     }
     Clearance::new(c)
 }
@@ -118,7 +126,13 @@ impl<'a> Obstacles<'a> {
         contacts
             .iter()
             .map(|contact| {
-                let hold = |until| Hold { normal: contact.normal, point: self.anchor(contact), slack, until };
+                let hold = |until| Hold {
+                    normal: contact.normal,
+                    point: self.anchor(contact),
+                    slack,
+                    until,
+                    face: contact.site.map(|site| site.face()),
+                };
                 if contact.lasting {
                     let until = f64::INFINITY;
                     return Return { hold: hold(until), entry: Entry::Never, free: self.free(contact, until) };
@@ -148,9 +162,9 @@ impl<'a> Obstacles<'a> {
         }
     }
 
-    /// The faces at what is touched, with the f until which the ball is free of them.
-    fn free(&self, contact: &Contact, until: f64) -> Option<(usize, Vec<u32>, f64)> {
-        Some((contact.surface, self.mesh(contact.surface)?.faces_at(contact.site?), until))
+    /// The place of a mesh that is touched, with the f until which the ball is free of its faces.
+    fn free(&self, contact: &Contact, until: f64) -> Option<(usize, Site, f64)> {
+        Some((contact.surface, contact.site?, until))
     }
 
     /// The shape that the centre follows along a contact.
@@ -214,14 +228,16 @@ impl<'a> Obstacles<'a> {
                 earliest = Some(Hit { f, surface: *surface, face: None, rate: Some(rate) });
             }
         }
-        let holds: ArrayVec<Hold, MAX_CONTACTS> = returns.iter().map(|r| r.hold).collect();
-        let ball = MovingBall { path: &step.path, radius: self.mesh_radius, holds: &holds };
         for (surface, mesh) in &self.plan.meshes {
+            let here = |r: &Return| r.hold.face.filter(|_| r.free.is_some_and(|(s, ..)| s == *surface));
+            let holds: ArrayVec<Hold, MAX_CONTACTS> =
+                returns.iter().map(|r| Hold { face: here(r), ..r.hold }).collect();
+            let ball = MovingBall { path: &step.path, radius: self.mesh_radius, holds: &holds };
             let to = earliest.map_or(step.to, |hit| hit.f);
             let mut work = Work::default();
             let free_until = |face: u32| {
                 let of_this = returns.iter().filter_map(|r| r.free.as_ref()).filter(|(s, ..)| s == surface);
-                of_this.filter(|(_, faces, _)| faces.contains(&face)).map(|(.., f)| *f).fold(0.0, f64::max)
+                of_this.filter(|(_, site, _)| mesh.is_at(face, *site)).map(|(.., f)| *f).fold(0.0, f64::max)
             };
             let found = mesh.first_contact(&ball, to, free_until, &mut work);
             counters.add(&work);
@@ -259,7 +275,7 @@ impl<'a> Obstacles<'a> {
             rate: normal.dot(velocity),
             lasting: false,
         };
-        let mut all: Vec<Contact> = Vec::new();
+        let mut all: SmallVec<[Contact; MAX_CONTACTS]> = SmallVec::new();
         for ((surface, plane), side) in self.plan.planes.iter().zip(&self.sides) {
             if plane.clearance(position, self.radius, *side) <= tolerance {
                 all.push(contact(*surface, None, plane.normal().into_inner() * side.sign()));
@@ -315,6 +331,14 @@ impl<'a> Obstacles<'a> {
             }
             _ => false,
         }
+    }
+
+    /// Whether the fold at `edge` of `face` is hollow on the side that `contact` is on.
+    pub fn is_hollow(&self, contact: &Contact, face: u32, edge: u8) -> bool {
+        let Some(mesh) = self.mesh(contact.surface) else { return false };
+        let fold = mesh.fold(face, edge.into());
+        let in_front = mesh.normal(face).is_some_and(|n| n.dot(&contact.normal) > 0.0);
+        (if in_front { fold } else { fold.from_back() }) == Fold::Concave
     }
 
     /// The mesh that `surface` is, if it is one.

@@ -10,8 +10,10 @@ use nalgebra::{Point3, Vector3};
 pub enum EventKind {
     /// The ball hit a surface and was answered.
     Impact,
-    /// Bouncing has ended, sliding begins.
+    /// Bouncing has ended, sliding begins; what friction took in the last hops, it took between `velocity_in` and `velocity`.
     Slide,
+    /// Slipping has ended, rolling begins.
+    Roll,
     /// The ball came to rest.
     Rest,
     /// Contact was lost.
@@ -50,6 +52,8 @@ pub struct Event {
     pub velocity_in: Vector3<f64>,
     /// Velocity just after, in m/s.
     pub velocity: Vector3<f64>,
+    /// Angular velocity just after, in rad/s, if the scene calls for it.
+    pub spin: Option<Vector3<f64>>,
 }
 
 /// How a ball moves.
@@ -59,6 +63,8 @@ pub enum Motion {
     Flying,
     /// In lasting contact, and moving.
     Sliding,
+    /// In lasting contact, and moving so that the point of contact does not.
+    Rolling,
     /// In lasting contact, and at rest.
     Resting,
 }
@@ -91,6 +97,8 @@ pub struct Outcome {
     pub time: f64,
     /// Where, and how fast.
     pub state: State,
+    /// Its angular velocity in rad/s, if the scene calls for it.
+    pub spin: Option<Vector3<f64>>,
     /// How it moved at the end.
     pub motion: Motion,
     /// What the simulation evaluated.

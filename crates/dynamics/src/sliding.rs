@@ -56,8 +56,8 @@ pub struct Balance {
     pub sticks: bool,
     /// The loads.
     pub loads: Projection,
-    /// An acceleration that is none, by rounding.
-    rounding: f64,
+    /// An acceleration that is none, by rounding, in m/s^2.
+    pub rounding: f64,
 }
 
 impl Balance {
@@ -79,6 +79,18 @@ impl Balance {
     pub fn holds(&self) -> bool {
         let friction = self.friction + self.rounding;
         self.sticks || self.free.norm_squared() <= friction * friction
+    }
+
+    /// In how many seconds friction stops a ball that moves with velocity `v` (m/s) on a plane, along whatever curve; none if it does not.
+    ///
+    /// With friction F and the free acceleration a, F |v| + a.v changes by the constant a^2 - F^2 per second: d|v|/dt = a.v/|v| - F and
+    /// d(a.v)/dt = a^2 - F a.v/|v|.
+    pub fn time_to_stop(&self, v: &Vector3<f64>) -> Option<f64> {
+        let (friction, free) = (self.friction, self.free.norm());
+        if self.sticks || v.norm() == 0.0 || friction - free <= self.rounding {
+            return None;
+        }
+        Some((friction * v.norm() + self.free.dot(v)) / ((friction - free) * (friction + free)))
     }
 
     /// The acceleration of a ball that moves, or begins to, along the unit vector `direction`.

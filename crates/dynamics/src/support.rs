@@ -113,6 +113,16 @@ fn in_groove(w: &Vector3<f64>, normals: [&Vector3<f64>; 2], allowed: [f64; 2]) -
     v / along.norm_squared()
 }
 
+/// The part of `v` along all planes with these normals: of three, none.
+pub fn along(normals: &[Vector3<f64>], v: Vector3<f64>) -> Vector3<f64> {
+    match normals {
+        [] => v,
+        [n] => v - n * n.dot(&v),
+        [a, b] => a.cross(b).try_normalize(0.0).map_or(v, |t| t * t.dot(&v)),
+        _ => Vector3::zeros(),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

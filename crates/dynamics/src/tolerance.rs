@@ -63,6 +63,19 @@ impl RestThresholds {
     }
 }
 
+/// Hops up to this many rest lengths are low.
+const LOW_HOP: f64 = 256.0;
+
+impl RestThresholds {
+    /// The speed in m/s of a hop that is low where the ball is pressed with the acceleration `pressed` >= 0 (m/s^2).
+    pub(crate) fn low_hop(&self, pressed: f64) -> f64 {
+        match *self {
+            Self::Length(length) => (2.0 * pressed * (LOW_HOP * length)).sqrt(),
+            Self::Book { speed, .. } => speed,
+        }
+    }
+}
+
 /// The rest length of a scene that gives none, as a share of its extent: bouncing ends where a hop is this small beside the
 /// scene. Of no consequence for the motion a person sees; a thousand times larger would show in a comparison to 9 digits.
 const REST_SHARE: f64 = 1.0e-12;
@@ -109,6 +122,10 @@ pub fn parallel(a: &Vector3<f64>, v: &Vector3<f64>) -> bool {
 /// Error allowed per step of a sliding motion that has no closed form, relative to the motion.
 pub const SLIDING_TOLERANCE: f64 = 1.0e-10;
 
+/// The same around edges and vertices, where nothing need take energy: a hundred times more, and it would be seen to grow where a step is cut,
+/// in its dense output.
+pub const ROLLING_TOLERANCE: f64 = 1.0e-12;
+
 /// Error allowed per step of the adaptive pair where the scene asks for no method: errors of micrometres in a throw of 100 m.
 pub const FLIGHT_TOLERANCE: f64 = 1.0e-9;
 
@@ -128,6 +145,10 @@ pub fn time_resolution(now: f64) -> f64 {
 
 /// Hops without time passing before bouncing ends: fewer than [`COLLAPSE_AFTER`], so that what is left of them is summed and not cut.
 pub const PATIENCE_WITH_HOPS: u32 = COLLAPSE_AFTER / 2;
+
+/// Low hops in a row before bouncing on an elastic surface ends beside one that takes energy. The ball lies on that one as on a rail: what it has
+/// left at the elastic end of the rail is about what bouncing ends with anywhere, and nothing takes it.
+pub const PATIENCE_WITH_LOW_HOPS: u32 = 256;
 
 /// Contacts answered without time passing before they are taken to answer each other for ever, so that restitution has lost all that it can
 /// lose. With fewer, what is left of the velocity might still be seen; the run would be ended at [`MAX_STANDSTILL`].

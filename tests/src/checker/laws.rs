@@ -61,7 +61,6 @@ impl Checker<'_> {
                     // Around a small ball, rounding of its position turns the normal that the velocity is held along.
                     let turn = slack / self.mesh_radius;
                     let allowed = (1e-9 + turn) * speed + (8192.0 * U * self.gravity.norm() * reach).sqrt();
-                    let jump = if self.settled { 0.0 } else { jump };
                     self.note(Flaw::Velocity, jump, allowed, || format!("{:?} -> {:?}", state.velocity, e.velocity_in));
                     let gain = e.velocity.norm_squared() - e.velocity_in.norm_squared();
                     self.note(Flaw::EnergyUp, gain, 64.0 * U * speed * speed, || format!("at impact {e:?}"));
@@ -80,11 +79,18 @@ impl Checker<'_> {
                         Friction::None => 0.0,
                         Friction::Linear(c) => c.get() * ta.norm(),
                         Friction::Coulomb(mu) => mu.get() * -a,
+                        // What turns the ball is not told by its velocity.
+                        Friction::Grip(_) => (ta - tb).norm(),
                         Friction::Impulse(mu) => mu.get() * (1.0 + c_r) * -a,
                     };
                     let want = if ta.norm() > cut { ta * (1.0 - cut / ta.norm()) } else { Vector3::zeros() };
                     self.note(Flaw::Friction, (tb - want).norm(), rounding * 4.0, || format!("{e:?} want {want:?}"));
                 }
+            }
+            if e.kind == EventKind::Slide {
+                let gain = e.velocity.norm_squared() - e.velocity_in.norm_squared();
+                self.note(Flaw::EnergyUp, gain, 64.0 * U * speed * speed, || format!("where sliding begins {e:?}"));
+                state.velocity = e.velocity;
             }
             if e.kind == EventKind::Rest {
                 state.velocity = Vector3::zeros();

@@ -1,6 +1,7 @@
 //! Scene files: TOML or JSON into a scene, every fault with its place.
 
 mod air;
+mod balls;
 mod build;
 mod choices;
 mod de;
@@ -10,24 +11,30 @@ pub mod problem;
 mod shapes;
 mod tree;
 
-use crate::balls::{self, BallList};
+use crate::balls::{self as ball_lists, BallList};
 use crate::commands::accuracy::setting;
 use crate::error::AppError;
 use crate::terminal::say;
 use carom_dynamics::accuracy::choose;
 use carom_dynamics::error::SceneError;
+use carom_dynamics::explain::choice::{Choice, choose as choose_effects};
 use carom_dynamics::plan::Plan;
 use carom_dynamics::scene::Scene;
-use file::SceneFile;
+use file::{EffectsShare, EffectsTable, EffectsWord, SceneFile};
 use parse::Notation;
 use problem::Problem;
 use std::path::Path;
 use tree::{Node, Step};
 
+/// To what share effects are chosen if the scene does not say.
+const PERCENT: f64 = 0.01;
+
 /// A scene, and what it takes to say where in its file something is.
 pub struct Loaded {
     /// The scene.
     pub scene: Scene,
+    /// How its effects were chosen, if they were.
+    pub choice: Option<Choice>,
     source: Source,
     balls: BallOrigin,
     /// The error in m for which the method is to be chosen, if it is.
@@ -119,11 +126,18 @@ pub fn load(path: &Path, balls: Option<&Path>) -> Result<Loaded, AppError> {
     }
     let mut origin = BallOrigin::Tables(tables);
     if let Some(list) = balls {
-        let list = balls::read(list)?;
+        let list = ball_lists::read(list)?;
         scene.balls = list.balls.clone();
         origin = BallOrigin::List(list);
     }
-    Ok(Loaded { scene, source: Source { path: shown, text, tree }, balls: origin, auto })
+    let loaded = Loaded { scene, choice: None, source: Source { path: shown, text, tree }, balls: origin, auto };
+    let tolerance = match file.effects {
+        None => return Ok(loaded),
+        Some(EffectsTable::Word(EffectsWord::Auto)) => PERCENT,
+        Some(EffectsTable::Share(EffectsShare { auto })) => auto,
+    };
+    let choice = choose_effects(&loaded.scene, tolerance).map_err(|error| loaded.refuse(&error))?;
+    Ok(Loaded { scene: choice.scene.clone(), choice: Some(choice), ..loaded })
 }
 
 /// The keys and types of a scene, or all that is wrong with them.
@@ -174,6 +188,12 @@ impl Loaded {
             }
             SceneError::NoExactFlight { .. } => path.extend([Step::Key("method"), Step::Key("integrator")]),
             SceneError::MassMissing { ball, .. } => return self.refuse_ball(*ball, None, problem),
+            SceneError::OwnMissing { ball, .. } => {
+                let help =
+                    "give it a name that the program knows, such as ball = \"tennis\", or `drag` and `restitution`";
+                return self.refuse_ball(*ball, None, problem.help(help));
+            }
+            SceneError::RadiusMissing { ball, .. } => return self.refuse_ball(*ball, None, problem),
             SceneError::RadiusBelowResolution { ball, .. } => return self.refuse_ball(*ball, Some("radius"), problem),
             SceneError::Ball { ball, source } => return self.refuse_ball(*ball, Some(source.name), problem),
             SceneError::Value(value) => path.push(Step::Key(value.name)),

@@ -76,6 +76,7 @@ pub fn follow(setting: &Setting, ball: &Ball, field: &Field, shift: &Vector) -> 
     let start = ball.start();
     let mut walker = Walker {
         setting,
+        ball,
         field: field.clone(),
         planes: setting.world.planes(&start.position, &start.velocity),
         radius: Real::from(ball.radius()),
@@ -94,6 +95,7 @@ pub fn follow(setting: &Setting, ball: &Ball, field: &Field, shift: &Vector) -> 
 
 struct Walker<'a> {
     setting: &'a Setting<'a>,
+    ball: &'a Ball,
     field: Field,
     planes: Vec<(usize, Obstacle)>,
     radius: Real,
@@ -231,8 +233,9 @@ impl Walker<'_> {
         touched
     }
 
-    fn material(&self, surface: usize) -> &Material {
-        &self.setting.plan.surfaces[surface].material
+    fn material(&self, surface: usize) -> Material {
+        let material = self.setting.plan.surfaces[surface].material;
+        Material { restitution: material.restitution.for_ball(self.ball), ..material }
     }
 
     /// The chapter's response; says why the course ends, if it does.
@@ -242,7 +245,7 @@ impl Walker<'_> {
         let (Some((surface, n, rate)), None) = (closing.next(), closing.next()) else {
             return Some(Reach::Simultaneous);
         };
-        let material = *self.material(*surface);
+        let material = self.material(*surface);
         self.course.impacts.push(Impact { time: self.t.clone(), surface: *surface });
         let speed = -rate;
         let v_t = slow(&material.friction, &sub(&self.v, &scale(n, rate)), &speed, &restitution(&material, &speed));
@@ -267,7 +270,7 @@ impl Walker<'_> {
     fn last(&mut self) -> Reach {
         let touched = self.touched();
         let [(surface, n, rate)] = touched.as_slice() else { return Reach::Simultaneous };
-        let material = *self.material(*surface);
+        let material = self.material(*surface);
         let on_plane = self.planes.iter().any(|(s, _)| s == surface);
         let duration = Real::from(self.setting.plan.duration);
         let settled = settle(&self.field, n, rate, &material, &self.v, &self.t, &(&duration - &self.t), on_plane);
@@ -307,7 +310,8 @@ pub fn slow(friction: &Friction, v_t: &Vector, closing: &Real, c_r: &Real) -> Ve
         scale(v_t, &(&(&speed - amount) / &speed))
     };
     match friction {
-        Friction::None => v_t.clone(),
+        // What grips has no reference of this kind: see Field::of.
+        Friction::None | Friction::Grip(_) => v_t.clone(),
         Friction::Linear(c_f) => scale(v_t, &(Real::from(1.0) - Real::from(c_f.get()))),
         Friction::Coulomb(mu) => less(&(&Real::from(mu.get()) * closing)),
         Friction::Impulse(mu) => {

@@ -138,6 +138,8 @@ pub enum Remark {
     },
     /// The exact flight is not offered, because something other than gravity acts.
     NoExactFlight,
+    /// The ways of the slides are not offered, because a surface grips and they know no spin.
+    NoTextbook,
     /// What a mesh is taken to be cut from.
     Discretised {
         /// The surface, by its index in the scene.
@@ -199,6 +201,7 @@ impl fmt::Display for Remark {
                 ),
                 Original::Itself => write!(f, "surface {surface}: a mesh with sharp edges, taken for what it is: no discretisation"),
             },
+            Self::NoTextbook => f.write_str("the ways of the slides are not offered: a surface grips, and they know no spin"),
             Self::NoExactFlight => f.write_str("`exact` is not offered: something other than uniform gravity acts"),
             Self::ExactFlights(variant) => write!(
                 f,

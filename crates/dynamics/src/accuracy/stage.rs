@@ -8,10 +8,11 @@ use super::real::vector;
 use super::record::{Record, Recorder, effective_step};
 use super::report::{Measurement, ReferenceKind, Remark, work};
 use super::taylor::Field;
-use super::variant::{Parameter, Variant};
+use super::variant::{Approach, Parameter, Variant};
 use super::world::World;
 use crate::body::{Ball, State};
 use crate::counters::Counters;
+use crate::effects::friction::Friction;
 use crate::error::SceneError;
 use crate::events::Motion;
 use crate::plan::Plan;
@@ -91,7 +92,12 @@ impl Stage<'_> {
     /// Every method with every step or tolerance of its sweep, the coarse ones first.
     pub(super) fn candidates(&mut self, effort: &Effort, coarse: f64) -> Result<Vec<Candidate>, SceneError> {
         let mut candidates = Vec::new();
-        for &variant in effort.variants {
+        let grips = self.scene.surfaces.iter().any(|s| matches!(s.material.friction, Friction::Grip(_)));
+        let textbook = |variant: Variant| matches!(variant.with(1.0), Approach::Textbook(_));
+        if grips && effort.variants.iter().any(|v| textbook(*v)) {
+            self.remarks.push(Remark::NoTextbook);
+        }
+        for &variant in effort.variants.iter().filter(|v| !(grips && textbook(**v))) {
             let values: Vec<f64> = match variant.parameter() {
                 Parameter::Step => (0..=effort.octaves).map(|k| coarse / 2f64.powi(k as i32)).collect(),
                 Parameter::Tolerance => (0..=effort.decades).map(|k| 10f64.powi(-3 - k as i32)).collect(),

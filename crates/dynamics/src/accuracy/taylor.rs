@@ -6,6 +6,7 @@ use super::real::{BITS, Real, Vector, add, cross, dot, norm, rounded, scale, sub
 use crate::body::Ball;
 use crate::effects::buoyancy::ADDED_MASS;
 use crate::effects::drag::Law;
+use crate::effects::friction::Friction;
 use crate::scene::Scene;
 use nalgebra::Vector3;
 
@@ -56,18 +57,11 @@ impl Field {
     /// What accelerates `ball` in `scene`; the name of an effect that has no series here, if there is one.
     pub fn of(scene: &Scene, ball: &Ball) -> Result<Self, &'static str> {
         // Taken apart, so that an effect that comes to a scene is not forgotten here.
-        let Scene {
-            gravity,
-            drag,
-            magnus,
-            spin_decay,
-            buoyancy,
-            duration: _,
-            surfaces: _,
-            balls: _,
-            rest: _,
-            method: _,
-        } = scene;
+        let Scene { gravity, drag, magnus, spin_decay, buoyancy, duration: _, surfaces, balls: _, rest: _, method: _ } =
+            scene;
+        if surfaces.iter().any(|s| matches!(s.material.friction, Friction::Grip(_))) {
+            return Err("friction that grips");
+        }
         let g = vector(&gravity.map_or(Vector3::zeros(), |g| g.acceleration()));
         let r = Real::from(ball.radius());
         let area = &Real::pi() * &(&r * &r);
@@ -80,12 +74,17 @@ impl Field {
             constant = scale(&g, &(&(&mass - &displaced) / &inertia));
         }
         let half = Real::from(0.5);
+        let quadratic = |coefficient: f64, density: f64| {
+            let c_rho = &Real::from(coefficient) * &Real::from(density);
+            Resistance::Quadratic(&(&(&half * &c_rho) * &area) / &inertia)
+        };
         let resistance = match drag.filter(|drag| !drag.is_none()) {
             None => None,
             Some(drag) => {
                 let law = match drag.law() {
                     Law::Linear(k) => Resistance::Linear(&Real::from(k) / &inertia),
-                    Law::Quadratic(c_rho) => Resistance::Quadratic(&(&(&half * &Real::from(c_rho)) * &area) / &inertia),
+                    Law::Quadratic { coefficient, density } => quadratic(coefficient, density),
+                    Law::OfBall(density) => quadratic(ball.drag().unwrap_or(0.0), density),
                     Law::Sphere { .. } => return Err("the drag of a smooth sphere"),
                 };
                 Some((law, vector(&drag.wind())))

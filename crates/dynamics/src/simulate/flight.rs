@@ -86,7 +86,7 @@ impl<O: Observer> Walk<'_, O> {
             self.correct(contact, tolerance);
         }
         self.contacts = contacts;
-        self.settle();
+        self.settle(None);
     }
 
     /// At a collision: what is touched, how fast, and the answer.
@@ -110,13 +110,16 @@ impl<O: Observer> Walk<'_, O> {
         }
         let closing: Vec<bool> = contacts.iter().map(|c| c.rate < 0.0).collect();
         if closing.contains(&true) {
-            let materials: Vec<_> = contacts.iter().map(|c| self.plan.surfaces[c.surface].material).collect();
+            let materials: Vec<_> = contacts.iter().map(|c| self.surfaces[c.surface].material).collect();
             let velocity_in = self.state.velocity;
             self.state.velocity = if collapses {
                 collapse(velocity_in, &mut contacts)
             } else {
                 respond(velocity_in, &mut contacts, &materials, &mut self.counters)
             };
+            if self.spins && !collapses {
+                self.grip(velocity_in, &mut contacts, &closing, &materials);
+            }
             self.counters.impacts += 1;
             self.halvings = 0;
             for (contact, _) in contacts.iter().zip(&closing).filter(|(_, closing)| **closing) {
@@ -128,7 +131,7 @@ impl<O: Observer> Walk<'_, O> {
         }
         self.contacts = contacts;
         let answered = closing.contains(&true);
-        let carried = self.settle();
+        let carried = self.settle(before.iter().find(|b| b.lasting).copied());
         if !answered && !carried && (hit.f == 0.0 || !step.exact) {
             // The path closes where the ball does not: the hop is too short for this step.
             self.halvings += 1;
@@ -149,7 +152,7 @@ impl<O: Observer> Walk<'_, O> {
                 self.answered.push(*c);
             }
         }
-        let loses = |c: &Contact| self.plan.surfaces[c.surface].material.restitution.coefficient() < 1.0;
+        let loses = |c: &Contact| self.surfaces[c.surface].material.restitution.coefficient() < 1.0;
         if self.standstill < COLLAPSE_AFTER || !self.answered.iter().any(loses) {
             return false;
         }
@@ -160,7 +163,7 @@ impl<O: Observer> Walk<'_, O> {
                 contacts.push(Contact { rate: a.normal.dot(&self.state.velocity), lasting: false, ..*a });
             }
         }
-        contacts.sort_by_key(|c| (self.plan.surfaces[c.surface].rank, c.site));
+        contacts.sort_by_key(|c| (self.surfaces[c.surface].rank, c.site));
         true
     }
 

@@ -1,16 +1,15 @@
-//! Lasting contact: when bouncing ends, sliding from place to place, and rest.
+//! Lasting contact: sliding from place to place, and rest.
 
-use super::{Settling, Walk};
+use super::Walk;
 use crate::body::State;
-use crate::contacts::{Contact, Contacts, MAX_CONTACTS};
-use crate::effects::friction::ContactFriction;
+use crate::collision::Hit;
+use crate::contacts::{Contact, Contacts};
 use crate::events::{EventKind, Motion};
 use crate::integrators::{Step, exact};
 use crate::observer::Observer;
-use crate::response::changed_rate;
 use crate::sliding::{Balance, Carrier, Slide, is_lifted, slide, tangential};
-use crate::tolerance::{PATIENCE, PATIENCE_WITH_HOPS, SLIDING_TOLERANCE, least_hop, rate_rounding, time_resolution};
-use carom_geometry::rounding::position_bound;
+use crate::support::along;
+use crate::tolerance::{RestThresholds, SLIDING_TOLERANCE, parallel, rate_rounding};
 use carom_geometry::site::{Bend, RegionBound, Site};
 use nalgebra::Vector3;
 
@@ -18,127 +17,31 @@ use nalgebra::Vector3;
 const MAX_CROSSINGS: usize = 4096;
 
 impl<O: Observer> Walk<'_, O> {
-    /// What the ball makes of its contacts: it flies on, goes on bouncing, or settles. Says whether something carries it.
-    pub(super) fn settle(&mut self) -> bool {
-        let sliding = self.motion == Motion::Sliding;
-        let a = self.forces.acceleration(&self.state, &mut self.counters);
-        let carriers = self.carriers();
-        let mut carrying = [false; MAX_CONTACTS];
-        let mut settling = None;
-        // A contact may press the ball into another that its weight alone would not press it into: asked again, until no other carries.
-        let mut free = a;
-        let mut more = true;
-        while std::mem::take(&mut more) {
-            for (i, carrier) in carriers.iter().enumerate() {
-                if carrying[i] {
-                    continue;
-                }
-                let contact = &carrier.contact;
-                let pressed = -contact.normal.dot(&free) - carrier.centripetal(&self.state.velocity);
-                carrying[i] = self.ends_bouncing(contact, pressed);
-                more |= carrying[i];
-                let c_r = self.plan.surfaces[contact.surface].material.restitution.coefficient();
-                if carrying[i] && contact.rate > 0.0 && c_r < 1.0 {
-                    // Around an edge the way along the surface is no flight: there the hops end at once.
-                    let flat = carrier.bend == Bend::Flat;
-                    let seconds = if flat { 2.0 * contact.rate / (pressed * (1.0 - c_r)) } else { 0.0 };
-                    settling = Some(Settling { seconds, closing: contact.rate, contact: i });
-                }
-            }
-            let held: Vec<Carrier> = carriers.iter().zip(&carrying).filter(|(_, c)| **c).map(|(c, _)| *c).collect();
-            free = Balance::of(&a, &held, &self.state).free;
-        }
-        if settling.is_some() && self.drives_into_others(&carrying) {
-            // What hops is not held down where that would press the ball into something else: it flies the hop.
-            settling = None;
-            for (contact, carrying) in self.contacts.iter().zip(&mut carrying) {
-                *carrying &= contact.rate <= 0.0;
-            }
-        }
-        let several = carrying.iter().filter(|c| **c).count() > 1;
-        if !carrying.contains(&true) {
-            self.set_flying(sliding);
-            return false;
-        }
-        for (contact, carrying) in self.contacts.iter_mut().zip(carrying) {
-            contact.lasting = carrying;
-            if carrying {
-                contact.rate = 0.0;
-            }
-        }
-        let before = self.state.velocity;
-        self.make_tangential();
-        for contact in self.contacts.iter_mut().filter(|c| !c.lasting) {
-            contact.rate = changed_rate(contact, &before, &self.state.velocity);
-        }
-        self.motion = Motion::Sliding;
-        self.halvings = 0;
-        match settling {
-            Some(settling) if !several => self.settling = Some(settling),
-            _ if !sliding => self.begin_sliding(),
-            _ => {}
-        }
-        true
-    }
-
-    /// Whether bouncing on `contact` has ended: it is pressed, and the next hop would be none (three of the four parts of
-    /// the rest test, for the normal speed; the fourth tells sliding from resting).
-    fn ends_bouncing(&mut self, contact: &Contact, pressed: f64) -> bool {
-        self.counters.rest += 1;
-        // What loses nothing bounces for ever. The air takes from each hop; an elastic surface with
-        // friction loses in a corner, without end.
-        let material = &self.plan.surfaces[contact.surface].material;
-        let smooth = material.friction.in_contact() == ContactFriction::Sliding(0.0);
-        let in_air = !self.forces.are_constant();
-        let loses = material.restitution.coefficient() < 1.0 || !smooth || in_air || self.standstill > PATIENCE;
-        let thresholds = self.plan.rest.at(pressed.max(0.0));
-        let still = self.state.velocity == Vector3::zeros();
-        if contact.rate == 0.0 {
-            return pressed > 0.0 || (still && pressed >= -thresholds.force);
-        }
-        let hop = contact.rate * contact.rate / (2.0 * pressed);
-        let resolved = self.integrator.timestep().map_or(0.0, |h| least_hop(pressed, h));
-        let hidden = hop <= position_bound(self.plan.farthest.max(self.state.position.coords.amax()));
-        // Nor does one go on whose hops the clock has not resolved for long: what is left of them has a closed form.
-        let brief =
-            self.standstill >= PATIENCE_WITH_HOPS && 2.0 * contact.rate <= pressed * time_resolution(self.clock.now());
-        let over = contact.rate <= thresholds.speed || hop <= resolved;
-        pressed > 0.0 && ((over && (loses || hidden)) || (brief && loses))
-    }
-
     /// The contacts as carriers.
-    fn carriers(&self) -> Vec<Carrier> {
+    pub(super) fn carriers(&self) -> Vec<Carrier> {
         self.contacts
             .iter()
             .map(|contact| Carrier {
                 contact: *contact,
                 bend: self.obstacles.bend(contact),
-                friction: self.plan.surfaces[contact.surface].material.friction.in_contact(),
+                friction: self.surfaces[contact.surface].material.friction.in_contact(),
                 radius: self.obstacles.radius_at(contact),
             })
             .collect()
     }
 
-    /// Whether taking the ball along the contacts that carry would drive it into one that does not.
-    fn drives_into_others(&self, carrying: &[bool]) -> bool {
-        let contacts = || self.contacts.iter().zip(carrying);
-        let held: Vec<_> = contacts().filter(|(_, carrying)| **carrying).map(|(c, _)| c.normal).collect();
-        let v = along(&held, self.state.velocity);
-        let rounding = rate_rounding(self.state.velocity.norm());
-        contacts().any(|(c, carrying)| !carrying && c.normal.dot(&v) < -rounding)
-    }
-
     /// Takes from the velocity what would leave or enter a lasting contact.
-    fn make_tangential(&mut self) {
+    pub(super) fn make_tangential(&mut self) {
         let lasting: Vec<Vector3<f64>> = self.contacts.iter().filter(|c| c.lasting).map(|c| c.normal).collect();
         self.state.velocity = along(&lasting, self.state.velocity);
     }
 
-    fn set_flying(&mut self, was_sliding: bool) {
+    /// Takes off from `left`, which carried it so far, if anything did.
+    pub(super) fn set_flying(&mut self, left: Option<Contact>) {
         self.motion = Motion::Flying;
         self.settling = None;
-        let left = self.contacts.iter().find(|c| c.lasting).or(self.contacts.first()).copied();
-        if was_sliding && let Some(contact) = left {
+        self.rolls = false;
+        if let Some(contact) = left {
             self.tell(EventKind::Leave, &contact, self.state.velocity);
         }
         for contact in &mut self.contacts {
@@ -146,17 +49,17 @@ impl<O: Observer> Walk<'_, O> {
         }
     }
 
-    /// Tells that sliding begins; whether it begins with rest, the next pass finds out.
-    fn begin_sliding(&mut self) {
-        if !self.try_to_rest()
+    /// Tells that sliding begins, or rest; `velocity_in` is the velocity before what ended the bouncing.
+    pub(super) fn begin_sliding(&mut self, velocity_in: Vector3<f64>) {
+        if !self.try_to_rest(velocity_in)
             && let Some(contact) = self.contacts.iter().find(|c| c.lasting).copied()
         {
-            self.tell(EventKind::Slide, &contact, self.state.velocity);
+            self.tell(EventKind::Slide, &contact, velocity_in);
         }
     }
 
     /// The four-part rest test: slow, in contact, pressed, and held by friction. A ball that passes it rests.
-    fn try_to_rest(&mut self) -> bool {
+    fn try_to_rest(&mut self, velocity_in: Vector3<f64>) -> bool {
         self.counters.rest += 1;
         let carriers: Vec<Carrier> = self.lasting_carriers();
         let still = State { velocity: Vector3::zeros(), ..self.state };
@@ -167,13 +70,17 @@ impl<O: Observer> Walk<'_, O> {
         };
         let Some(carrier) = carriers.get(main) else { return false };
         let pressed = -carrier.contact.normal.dot(&a);
-        let slow = self.state.velocity.norm() <= self.plan.rest.at(pressed.max(0.0)).speed || balance.sticks;
-        if !(slow && balance.holds()) {
+        let threshold = self.plan.rest.at(pressed.max(0.0)).speed;
+        let slow = self.state.velocity.norm() <= threshold || balance.sticks;
+        if !(slow && balance.holds()) || (self.spins && self.turns_on(&carriers, threshold)) {
             return false;
         }
         let contact = carrier.contact;
-        let velocity_in = std::mem::replace(&mut self.state.velocity, Vector3::zeros());
+        self.state.velocity = Vector3::zeros();
         self.motion = Motion::Resting;
+        if self.spins {
+            self.stop_turning(&contact);
+        }
         self.tell(EventKind::Rest, &contact, velocity_in);
         true
     }
@@ -184,41 +91,53 @@ impl<O: Observer> Walk<'_, O> {
 
     /// One stretch of sliding: to a stop, over an edge, into another surface, or off.
     pub(super) fn slide(&mut self) {
-        if self.settling.is_none() && self.try_to_rest() {
-            return;
-        }
         let carriers = self.lasting_carriers();
         let a = self.forces.acceleration(&self.state, &mut self.counters);
-        let balance = Balance::of(&a, &carriers, &self.state);
+        let mut balance = Balance::of(&a, &carriers, &self.state);
+        let follows = self.spins && self.settling.is_none();
+        self.slip = if follows { self.slipping(&carriers, &balance) } else { None };
+        let rolls = follows && self.slip.is_none() && self.is_gripped(&carriers);
+        let forces = if rolls { self.forces.of_rolling() } else { self.forces };
+        if rolls {
+            balance = Balance::of(&forces.acceleration(&self.state, &mut self.counters), &carriers, &self.state);
+        }
+        let slips = self.slip.is_some();
+        let stopping = if slips { None } else { self.time_to_stop(&carriers, &balance) };
+        if self.settling.is_none() && !slips && stopping.is_none() && self.try_to_rest(self.state.velocity) {
+            return;
+        }
         if balance.loads.count() == 0 && self.settling.is_none() {
-            self.set_flying(true);
+            self.set_flying(carriers.first().map(|c| c.contact));
             return;
         }
-        if self.drop_unloaded(&balance) {
+        if self.drop_unloaded(&carriers, &balance) {
             return;
         }
-        if self.settling.is_none() && self.turns_round(&balance) {
+        self.begin_rolling(rolls);
+        if self.settling.is_none() && !slips && self.turns_round(&balance) {
             self.state.velocity = Vector3::zeros();
             self.contacts.iter_mut().for_each(|c| c.rate = 0.0);
         }
         let remaining = self.clock.until(self.plan.duration);
-        let Slide { mut step, stops } = match self.settling {
-            None => {
-                let slider = &mut self.slider;
-                slide(slider, &self.forces, &self.state, &carriers, &balance, remaining, &mut self.counters)
-            }
-            // The hops are too low to see, and friction acts at their ends: a flight along the surface.
-            Some(settling) => {
-                self.counters.paths += 1;
-                let seconds = settling.seconds.min(remaining);
-                let step = exact::step(&self.state, balance.free, seconds);
-                Slide { step, stops: seconds == settling.seconds }
+        let last = stopping.and_then(|seconds| self.last_stretch(seconds));
+        let Slide { mut step, stops } = match (self.slip, self.settling, last) {
+            (Some(slip), ..) => self.slip(&slip, &carriers, remaining),
+            (None, Some(settling), _) => self.settling_flight(&settling, &carriers, &balance),
+            (None, None, Some(last)) => last,
+            (None, None, None) => {
+                let flat = carriers.iter().all(|c| c.bend == Bend::Flat);
+                let slider = if flat { &mut self.slider } else { &mut self.roller };
+                slide(slider, &forces, &self.state, &carriers, &balance, remaining, &mut self.counters)
             }
         };
         if self.diverges(&step) {
             return;
         }
-        let motion = if self.settling.is_some() { Motion::Flying } else { Motion::Sliding };
+        let motion = match self.settling {
+            Some(_) => Motion::Flying,
+            None if rolls => Motion::Rolling,
+            None => Motion::Sliding,
+        };
         let off = self.settling.is_none().then(|| self.lift_off(&step, &carriers)).flatten();
         step.to = off.unwrap_or(step.to);
         let mut crossings = Vec::new();
@@ -229,6 +148,9 @@ impl<O: Observer> Walk<'_, O> {
         let to = hit.map(|hit| hit.f).or(exit.map(|(f, ..)| f)).unwrap_or(step.to);
         let whole = hit.is_none() && exit.is_none() && off.is_none() && !stops && step.time(step.to) >= remaining;
         self.travel(&step, to, motion, whole.then_some(self.plan.duration));
+        if let Some(settling) = &mut self.settling {
+            settling.seconds -= step.time(to);
+        }
         self.cross_level(&crossings, to);
         if to > 0.0 {
             self.leave_behind();
@@ -241,19 +163,45 @@ impl<O: Observer> Walk<'_, O> {
                 self.end_settling();
                 self.arrive(&step, hit, &returns);
             }
-            (None, Some((_, contact, bound))) => {
+            (None, Some((f, contact, bound))) => {
+                let step = Step { exact: step.exact && self.settling.is_none(), ..step };
                 self.end_settling();
-                self.cross(contact, &bound);
+                match self.face_that_rises(contact, bound.next) {
+                    Some((surface, face)) => {
+                        self.arrive(&step, Hit { f, surface, face: Some(face), rate: None }, &returns)
+                    }
+                    None => self.cross(contact, &bound),
+                }
             }
             (None, None) if self.settling.is_some() => {
                 if stops {
                     self.end_settling();
                 }
             }
-            (None, None) if off.is_some() => self.set_flying(true),
+            (None, None) if off.is_some() => self.set_flying(carriers.first().map(|c| c.contact)),
             (None, None) if stops => self.state.velocity = Vector3::zeros(),
             (None, None) => {}
         }
+    }
+
+    /// In how many seconds friction will have stopped a ball that turns as it slides, if it is known: where the rest test has a speed of its
+    /// own, that decides.
+    fn time_to_stop(&self, carriers: &[Carrier], balance: &Balance) -> Option<f64> {
+        let is_plain = self.forces.are_constant() && carriers.iter().all(|c| c.bend == Bend::Flat);
+        let turns = !parallel(&balance.free, &self.state.velocity);
+        let by_length = matches!(self.plan.rest, RestThresholds::Length(_));
+        (is_plain && turns && by_length).then(|| balance.time_to_stop(&self.state.velocity)).flatten()
+    }
+
+    /// The last `seconds` of sliding, where the way is too short for its turning to be seen.
+    fn last_stretch(&mut self, seconds: f64) -> Option<Slide> {
+        let v = self.state.velocity;
+        let way = 0.5 * v.norm() * seconds;
+        if way > self.plan.rest.at(0.0).distance || seconds > self.clock.until(self.plan.duration) {
+            return None;
+        }
+        self.counters.paths += 1;
+        Some(Slide { step: exact::step(&self.state, -v / seconds, seconds), stops: true })
     }
 
     /// Whether a ball that friction cannot hold is so slow that it stands, before it sets out the other way.
@@ -293,32 +241,21 @@ impl<O: Observer> Walk<'_, O> {
         }
     }
 
-    /// Lets go of contacts that no longer carry; says whether there were any.
-    fn drop_unloaded(&mut self, balance: &Balance) -> bool {
+    /// Lets go of contacts that the ball accelerates away from; says whether there were any.
+    fn drop_unloaded(&mut self, carriers: &[Carrier], balance: &Balance) -> bool {
         if self.settling.is_some() {
             return false;
         }
-        let mut loaded = [false; MAX_CONTACTS];
-        balance.loads.loads().for_each(|(i, _)| loaded[i] = true);
+        let velocity = self.state.velocity;
         let mut dropped = false;
-        for (place, contact) in self.contacts.iter_mut().filter(|c| c.lasting).enumerate() {
-            if !loaded[place] {
+        for (i, contact) in self.contacts.iter_mut().filter(|c| c.lasting).enumerate() {
+            let lift = contact.normal.dot(&balance.free) + carriers[i].centripetal(&velocity);
+            if !balance.loads.loads().any(|(loaded, _)| loaded == i) && lift > balance.rounding {
                 contact.lasting = false;
                 dropped = true;
             }
         }
         dropped
-    }
-
-    /// The impacts of the hops that were flown along the surface, all at once; then sliding begins.
-    fn end_settling(&mut self) {
-        if let Some(settling) = self.settling.take() {
-            let contact = self.contacts[settling.contact];
-            let material = &self.plan.surfaces[contact.surface].material;
-            let c_r = material.restitution.coefficient();
-            self.state.velocity = material.friction.slow_to_the_end(self.state.velocity, settling.closing, c_r);
-            self.begin_sliding();
-        }
     }
 
     /// Where the step first leaves the region of a lasting contact, and which of the lasting ones that is; on the way, `crossings`
@@ -356,6 +293,23 @@ impl<O: Observer> Walk<'_, O> {
         }
     }
 
+    /// A face that closes in on the ball where it comes to `next` from the lasting contact numbered `contact`: in a hollow, the next face is touched
+    /// before the edge is reached, but by less than rounding where the ball is small.
+    fn face_that_rises(&mut self, contact: usize, next: Site) -> Option<(usize, u32)> {
+        let contact = *self.contacts.iter().filter(|c| c.lasting).nth(contact)?;
+        if let Site::Edge { face, edge } = next
+            && !self.obstacles.is_hollow(&contact, face, edge)
+        {
+            return None;
+        }
+        let tolerance = self.touch_tolerance(0.0);
+        let State { position, velocity } = self.state;
+        let touched = self.obstacles.touching(&position, &velocity, tolerance, &mut self.counters);
+        let rounding = rate_rounding(velocity.norm());
+        let rises = |c: &&Contact| c.surface == contact.surface && c.site != contact.site && c.rate < -rounding;
+        touched.iter().find(rises).and_then(|c| Some((c.surface, c.site?.face())))
+    }
+
     /// The neighbouring place takes over.
     fn cross(&mut self, contact: usize, bound: &RegionBound) {
         let Some(contact) = self.contacts.iter_mut().filter(|c| c.lasting).nth(contact) else { return };
@@ -384,15 +338,5 @@ impl<O: Observer> Walk<'_, O> {
             self.correct(contact, self.touch_tolerance(0.0).max(slack));
         }
         self.make_tangential();
-    }
-}
-
-/// The part of `v` along all planes with these normals.
-fn along(normals: &[Vector3<f64>], v: Vector3<f64>) -> Vector3<f64> {
-    match normals {
-        [] => v,
-        [n] => v - n * n.dot(&v),
-        [a, b] => a.cross(b).try_normalize(0.0).map_or(v, |t| t * t.dot(&v)),
-        _ => Vector3::zeros(),
     }
 }
