@@ -5,6 +5,7 @@ use super::real::{BITS, Real, norm, point, rounded, sub};
 use super::record::{Record, energy};
 use crate::body::State;
 use crate::scene::Scene;
+use nalgebra::Vector3;
 
 /// The errors of a run, at worst over its balls and over the time in which they can be compared.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -169,7 +170,7 @@ pub struct EulerLaws {
     pub height: f64,
     /// The energy per mass grows by g^2 h^2 / 2 in a step.
     pub energy: f64,
-    /// The first impact is late by h / 2; none without one. (A start that is thrown up or down adds v0 h / 2 v.)
+    /// The first impact is late by h / 2 after a start from rest; none without one.
     pub late: Option<f64>,
 }
 
@@ -195,7 +196,7 @@ impl EulerLaws {
         Some(Self {
             height: too_high / (0.5 * strength * time * h),
             energy: gained / (0.5 * strength * strength * h * h),
-            late: first_impact.map(|late| late / (0.5 * h)),
+            late: first_impact.filter(|_| start.velocity == Vector3::zeros()).map(|late| late / (0.5 * h)),
         })
     }
 }
@@ -224,7 +225,7 @@ impl Ends {
     /// Of final states with the number of impacts and of resting balls.
     pub fn of(scene: &Scene, states: &[State], impacts: usize, resting: usize) -> Self {
         let n = states.len().max(1) as f64;
-        let centre = states.iter().fold(nalgebra::Vector3::zeros(), |sum, s| sum + s.position.coords / n);
+        let centre = states.iter().fold(Vector3::zeros(), |sum, s| sum + s.position.coords / n);
         let square = states.iter().map(|s| (s.position.coords - centre).norm_squared() / n).sum::<f64>();
         let energy = states.iter().map(|s| energy(scene, s) / n).sum();
         Self { impacts, resting, energy, spread: square.sqrt(), centre: centre.into() }

@@ -62,8 +62,10 @@ impl Stage<'_> {
             {
                 self.remarks.push(Remark::LoweredByBounces { variant, flight, order });
             }
-            let radius = self.scene.balls.iter().map(Ball::radius).fold(self.plan.farthest * 2f64.powi(-10), f64::max);
-            let runs = sweep.measurements.iter().filter(|m| m.errors.penetration > radius).count();
+            // By more than half the ball; of points, by more than a thousandth of the scene.
+            let largest = self.scene.balls.iter().map(Ball::radius).fold(0.0, f64::max);
+            let deep = if largest > 0.0 { 0.5 * largest } else { self.plan.farthest * 2f64.powi(-10) };
+            let runs = sweep.measurements.iter().filter(|m| m.errors.penetration > deep).count();
             if runs > 0 {
                 self.remarks.push(Remark::Through { variant, runs });
             }

@@ -97,8 +97,17 @@ const OFFERED: [Variant; 5] =
 ///
 /// It looks at work counts and not at the clock, so that the same scene gets the same method on every machine.
 pub fn choose(scene: &Scene, tolerance: f64) -> Result<Option<(Method, Measurement)>, SceneError> {
-    let effort = Effort { repeats: 0, variants: &OFFERED, resolutions: false, ..Effort::default() };
-    let report = measure(scene, &effort, &mut || 0.0)?;
-    let best = report.cheapest(tolerance);
-    Ok(best.and_then(|m| Some((m.method()?, m.clone()))))
+    let choose = |variants| -> Result<_, SceneError> {
+        let effort = Effort { repeats: 0, resolutions: false, variants, ..Effort::default() };
+        let report = measure(scene, &effort, &mut || 0.0)?;
+        let best = report.cheapest(tolerance);
+        Ok(best.and_then(|m| Some((m.method()?, m.clone()))))
+    };
+    // One path a flight: nothing that steps can be cheaper.
+    if Plan::new(&Scene { method: None, ..scene.clone() })?.method() == Method::Exact
+        && let Some(exact) = choose(&[Variant::Exact])?
+    {
+        return Ok(Some(exact));
+    }
+    choose(&OFFERED)
 }

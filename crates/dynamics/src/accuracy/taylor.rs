@@ -62,6 +62,9 @@ impl Field {
         if surfaces.iter().any(|s| matches!(s.material.friction, Friction::Grip(_))) {
             return Err("friction that grips");
         }
+        if scene.grips() {
+            return Err("the grip of surfaces on spin");
+        }
         let g = vector(&gravity.map_or(Vector3::zeros(), |g| g.acceleration()));
         let r = Real::from(ball.radius());
         let area = &Real::pi() * &(&r * &r);

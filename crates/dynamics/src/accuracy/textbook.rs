@@ -26,7 +26,10 @@ use carom_geometry::projection::DominantAxis;
 use nalgebra::{Point3, Vector3};
 
 /// Collisions in one step before the rest of it is given up.
-const MAX_COLLISIONS: u32 = 64;
+const MAX_COLLISIONS: u32 = 8;
+
+/// Collisions of a ball before its simulation is ended: without a test for rest it trembles for ever.
+const COLLISION_BUDGET: u64 = 50_000;
 
 /// Halvings of an interval of f: as many as it has digits.
 const HALVINGS: u32 = 53;
@@ -117,6 +120,10 @@ pub fn simulate_textbook(plan: &Plan, method: &Textbook, ball: &Ball, observer: 
             });
             (time, remaining) = (until, remaining - timestep);
             collisions += 1;
+            if counters.impacts >= COLLISION_BUDGET {
+                ending = Ending::EventBudget;
+                break 'run;
+            }
             if collisions == MAX_COLLISIONS {
                 counters.halvings += 1;
                 break;

@@ -1,6 +1,6 @@
 //! The measurements as text for the eye, and as CSV.
 
-use carom_dynamics::accuracy::{Measurement, Parameter, Report, Variant};
+use carom_dynamics::accuracy::{Measurement, Order, Parameter, Report, Variant};
 use carom_dynamics::scene::Scene;
 use std::fmt::Write;
 
@@ -187,12 +187,13 @@ fn orders(report: &Report) -> Columns {
     let mut table = Columns::new(["method", "in flight", "textbook", "with bounces", "textbook", "what it is"]);
     for sweep in &report.sweeps {
         let theory = sweep.variant.textbook_orders();
-        let order = |k: usize| theory.map_or("exact".to_owned(), |orders| orders[k].to_string());
+        let order = |k: usize| theory.map_or("-".to_owned(), |orders| orders[k].to_string());
+        let fitted = |order: &Order| if theory.is_some() { order.to_string() } else { "-".to_owned() };
         table.push([
             sweep.variant.name().to_owned(),
-            sweep.flight_order.to_string(),
+            fitted(&sweep.flight_order),
             order(0),
-            sweep.order.to_string(),
+            fitted(&sweep.order),
             order(1),
             sweep.variant.description().to_owned(),
         ]);
