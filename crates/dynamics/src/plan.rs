@@ -139,6 +139,18 @@ impl Plan {
         })
     }
 
+    /// The same plan with a flow effect of your own, which acts on every ball in flight beside those of the scene.
+    ///
+    /// A plan that was exact is computed by the adaptive pair from here on: no closed form knows the effect.
+    pub fn with_flow(mut self, flow: Arc<dyn Flow>) -> Self {
+        self.flows.push(Arc::clone(&flow));
+        self.spinning_flows.push(flow);
+        if self.method == Method::Exact {
+            self.method = Method::Adaptive { tolerance: FLIGHT_TOLERANCE };
+        }
+        self
+    }
+
     /// The balls, in the order of the scene.
     pub fn balls(&self) -> &[Ball] {
         &self.balls
