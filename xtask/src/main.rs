@@ -7,6 +7,7 @@ mod project;
 mod log;
 mod blocks;
 mod commands;
+mod picture;
 mod readme;
 mod instructions;
 mod measure;
@@ -20,7 +21,7 @@ use std::process::ExitCode;
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
 /// The tasks, as the README may name them.
-const TASKS: [&str; 7] = ["verify", "readme", "soak", "conformance", "instructions", "peers", "scaling"];
+const TASKS: [&str; 8] = ["verify", "readme", "soak", "conformance", "instructions", "peers", "scaling", "picture"];
 
 const HELP: &str = "\
 Usage: cargo xtask TASK
@@ -29,6 +30,7 @@ Tasks:
   verify                      every check of the project; what the continuous integration runs
   verify --only STEP[,STEP]   only these steps
   verify --list               the steps, and what each checks
+  picture                     takes the README's picture anew, by Chromium
   readme                      rewrites the generated blocks of README.md
   conformance                 writes the folder conformance: scenes with the events they must have
   soak --bounces N            bounces balls N times (1e8 say) in scenes of every kind and reports escapes, gains and stalls
@@ -51,6 +53,7 @@ fn main() -> ExitCode {
             Err(error) => return usage(&error.to_string()),
         },
         ["readme"] => readme::rewrite(),
+        ["picture"] => picture::take(),
         ["instructions"] => instructions::run(false),
         ["instructions", "--update"] => instructions::run(true),
         ["peers"] => measure::peers(),
