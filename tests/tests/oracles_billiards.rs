@@ -171,7 +171,7 @@ fn r26_an_error_of_the_start_grows_as_fast_as_the_tables_say() {
         // Two starts an error apart: as many hits as it takes for the one to be seen and not yet to be everything.
         let apart = 1e-12;
         let seen = group.iter().filter(|row| row.number("log10_error_growth") < 9.0);
-        let last = seen.clone().last().expect("the first hits are known");
+        let last = seen.clone().next_back().expect("the first hits are known");
         let [n, t, right] = last.numbers(["hit", "t", "log10_error_growth"]);
         let place = |x0: f64| {
             let impacts = gravity_wedge(1.1 * t + 1.0, g, angle, [x0, y0, vx0, vy0]).run().impacts();

@@ -153,7 +153,8 @@ fn h30_linear_drag_of_any_strength_is_its_closed_form_in_few_steps() {
         }
     }
     println!("at most {steps} steps");
-    assert!(steps < 5000, "{steps}");
+    // Without gravity and wind it is slowed down to nothing, 5e-324 m/s: 745 times by 1/e, in steps of 0.04 k / m.
+    assert!(steps < 20_000, "{steps}");
     Worst::settle_all([speeds, places]);
 }
 

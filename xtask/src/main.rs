@@ -8,6 +8,7 @@ mod log;
 mod blocks;
 mod commands;
 mod picture;
+mod accuracy;
 mod readme;
 mod instructions;
 mod measure;
@@ -21,7 +22,8 @@ use std::process::ExitCode;
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
 /// The tasks, as the README may name them.
-const TASKS: [&str; 8] = ["verify", "readme", "soak", "conformance", "instructions", "peers", "scaling", "picture"];
+const TASKS: [&str; 9] =
+    ["verify", "readme", "accuracy", "soak", "conformance", "instructions", "peers", "scaling", "picture"];
 
 const HELP: &str = "\
 Usage: cargo xtask TASK
@@ -30,8 +32,9 @@ Tasks:
   verify                      every check of the project; what the continuous integration runs
   verify --only STEP[,STEP]   only these steps
   verify --list               the steps, and what each checks
-  picture                     takes the README's picture anew, by Chromium
   readme                      rewrites the generated blocks of README.md
+  picture                     takes the README's picture anew, by Chromium
+  accuracy                    measures what accuracy costs in three scenes; plots, tables, README
   conformance                 writes the folder conformance: scenes with the events they must have
   soak --bounces N            bounces balls N times (1e8 say) in scenes of every kind and reports escapes, gains and stalls
   soak --shots M              shoots M points and M balls from inside closed meshes at their edges and vertices
@@ -54,6 +57,7 @@ fn main() -> ExitCode {
         },
         ["readme"] => readme::rewrite(),
         ["picture"] => picture::take(),
+        ["accuracy"] => accuracy::run(),
         ["instructions"] => instructions::run(false),
         ["instructions", "--update"] => instructions::run(true),
         ["peers"] => measure::peers(),

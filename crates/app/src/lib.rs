@@ -51,6 +51,7 @@ pub fn main() -> ExitCode {
         Command::Init(args) => commands::init::init(args),
         Command::Run(args) => commands::run::run(args),
         Command::Explain(args) => commands::explain::explain(args),
+        Command::Accuracy(args) => commands::accuracy::accuracy(args),
         Command::View(args) => commands::view::view(args),
         Command::Plot(args) => commands::plot::plot(args),
         Command::Export(args) => commands::export::export(args),

@@ -90,3 +90,4 @@ pub mod observer;
 pub mod simulate;
 pub mod run;
 pub mod explain;
+pub mod accuracy;

@@ -41,6 +41,8 @@ pub(super) use at;
 pub struct Builder<'a> {
     pub tree: &'a Node,
     pub problems: Vec<Problem>,
+    /// The error in m for which the method is to be chosen, if it is.
+    pub auto: Option<f64>,
 }
 
 impl Builder<'_> {
@@ -143,7 +145,7 @@ impl Builder<'_> {
 
     fn method(&mut self, table: &MethodTable) -> Option<Method> {
         let stepping: Option<fn(f64) -> Method> = match table.integrator {
-            Integrator::Exact | Integrator::Adaptive => None,
+            Integrator::Exact | Integrator::Adaptive | Integrator::Auto => None,
             Integrator::Euler => Some(|step| Method::Euler { step }),
             Integrator::SemiImplicitEuler => Some(|step| Method::SemiImplicitEuler { step }),
             Integrator::Rk4 => Some(|step| Method::Rk4 { step }),
@@ -152,14 +154,14 @@ impl Builder<'_> {
             let problem = Problem::new("`step` is for a stepping method");
             self.refuse(at!["method", "step"], problem.help("stepping: `euler`, `semi-implicit-euler`, `rk4`"));
         }
-        if table.integrator != Integrator::Adaptive && table.tolerance.is_some() {
-            let problem = Problem::new("`tolerance` is for the integrator `adaptive`");
+        if !matches!(table.integrator, Integrator::Adaptive | Integrator::Auto) && table.tolerance.is_some() {
+            let problem = Problem::new("`tolerance` is for the integrators `adaptive` and `auto`");
             self.refuse(at!["method", "tolerance"], problem);
         }
         let key = if stepping.is_some() { "step" } else { "tolerance" };
         let value = match table.integrator {
             Integrator::Exact => return Some(Method::Exact),
-            Integrator::Adaptive => table.tolerance,
+            Integrator::Adaptive | Integrator::Auto => table.tolerance,
             _ => table.step,
         };
         let Some(value) = value else {
@@ -170,6 +172,10 @@ impl Builder<'_> {
         };
         if !(value.is_finite() && value > 0.0) {
             self.refuse(at!["method", key], Problem::new(format!("{key} is {value:?}, but must be finite and > 0")));
+            return None;
+        }
+        if table.integrator == Integrator::Auto {
+            self.auto = Some(value);
             return None;
         }
         Some(stepping.map_or(Method::Adaptive { tolerance: value }, |make| make(value)))

@@ -330,7 +330,7 @@ pub struct MethodTable {
     pub integrator: Integrator,
     /// The time step in s of `euler`, `semi-implicit-euler` and `rk4`.
     pub step: Option<f64>,
-    /// The error that `adaptive` allows per step, relative to the size of the motion.
+    /// For `adaptive` the error allowed per step, relative to the size of the motion; for `auto` the largest error of a position, in m.
     pub tolerance: Option<f64>,
 }
 
@@ -348,4 +348,6 @@ pub enum Integrator {
     Rk4,
     /// Runge-Kutta of orders 5 and 4 that chooses its steps.
     Adaptive,
+    /// The cheapest of these that keeps positions right to `tolerance`, with its step: chosen before the run, by measuring, and said.
+    Auto,
 }
