@@ -18,11 +18,12 @@ pub struct Step {
 
 /// Cheap ones first. The debug profile is built once, for the tests; the release profile once, for the scenes and the
 /// README.
-pub const STEPS: [Step; 11] = [
+pub const STEPS: [Step; 12] = [
     Step { name: "format", what: "the code is formatted", run: format },
     Step { name: "clippy", what: "no warning of rustc or clippy, in any target", run: clippy },
     Step { name: "tests", what: "the tests of every crate; no snapshot is written", run: tests },
     Step { name: "doctests", what: "the examples in the documentation", run: doctests },
+    Step { name: "examples", what: "the examples of the libraries run to their end", run: examples },
     Step { name: "docs", what: "the documentation builds without a warning", run: docs },
     Step { name: "snapshots", what: "no snapshot waits for review", run: snapshots },
     Step { name: "catalogue", what: "the hard cases: what breaks elsewhere, our figure, the bound", run: catalogue },
@@ -58,6 +59,23 @@ fn tests(project: &Project, log: &mut Log) -> Result<bool> {
 
 fn doctests(project: &Project, log: &mut Log) -> Result<bool> {
     log.run(&mut project.cargo(["test", "--workspace", "--no-fail-fast", "--doc"]))
+}
+
+fn examples(project: &Project, log: &mut Log) -> Result<bool> {
+    let mut passed = true;
+    for (package, folder) in
+        [("carom-geometry", "crates/geometry/examples"), ("carom-dynamics", "crates/dynamics/examples")]
+    {
+        let mut names = Vec::new();
+        for entry in fs::read_dir(project.root().join(folder))? {
+            names.extend(entry?.path().file_stem().map(|name| name.to_string_lossy().into_owned()));
+        }
+        names.sort();
+        for name in &names {
+            passed &= log.run(&mut project.cargo(["run", "--quiet", "--package", package, "--example", name]))?;
+        }
+    }
+    Ok(passed)
 }
 
 fn docs(project: &Project, log: &mut Log) -> Result<bool> {
