@@ -6,6 +6,7 @@ pub mod closed;
 pub mod conformance;
 pub mod data;
 pub mod exact;
+pub mod fuzz;
 pub mod grid;
 pub mod hunt;
 pub mod nasty;

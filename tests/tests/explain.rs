@@ -1,7 +1,10 @@
 //! What `explain` predicts and measures, against the rules of thumb, closed forms, and runs of the test's own.
 
 use carom_dynamics::effects::drag::Drag;
+use carom_dynamics::effects::friction::Friction;
+use carom_dynamics::effects::grip::Grip;
 use carom_dynamics::effects::magnus::Magnus;
+use carom_dynamics::explain::choice::choose;
 use carom_dynamics::explain::effect::Effect;
 use carom_dynamics::explain::{Finding, Quantity, explain};
 use carom_tests::oracle::{Table, Worst};
@@ -153,4 +156,53 @@ fn an_effect_that_cannot_be_told_says_why() {
         let entry = explanation.entry(effect);
         assert!(!entry.on && entry.finding.as_ref().is_err_and(|why| !why.is_empty()), "{effect:?}");
     }
+}
+
+/// The share by which the first impacts of two scenes with one ball differ: in time, in speed, or in place over the way.
+fn differ(a: &Stage, b: &Stage, way: f64) -> f64 {
+    let (a, b) = (a.run().impacts()[0], b.run().impacts()[0]);
+    let speed = |v: Vector3<f64>| v.norm();
+    let time = (a.time - b.time).abs() / a.time;
+    let speeds = (speed(a.velocity_in) - speed(b.velocity_in)).abs() / speed(a.velocity_in);
+    time.max(speeds).max((a.position - b.position).norm() / way)
+}
+
+#[test]
+fn the_effects_that_are_chosen_are_those_that_matter_and_what_is_left_out_costs_no_more_than_asked() {
+    for (tolerance, kept) in [(0.05, vec![]), (0.01, vec![Effect::Drag]), (0.001, vec![Effect::Drag, Effect::Buoyancy])]
+    {
+        let choice = choose(&tennis().0, tolerance).unwrap();
+        assert_eq!(choice.kept.iter().map(|(effect, _)| *effect).collect::<Vec<_>>(), kept, "{tolerance}");
+        assert!(choice.price <= tolerance && choice.kept.iter().all(|(_, share)| *share > tolerance), "{choice:?}");
+        let all = tennis().drag(Drag::of_ball(1.204).unwrap()).buoyancy(1.204);
+        let chosen = Stage(choice.scene.clone());
+        // The measured price is that of runs of the test's own.
+        assert!((differ(&chosen, &all, 2.54) - choice.price).abs() < 1e-12, "{tolerance}: {}", choice.price);
+        // And what is left out is not even asked.
+        assert_eq!(chosen.run().outcome.counters.drag > 0, kept.contains(&Effect::Drag));
+        assert!(choice.runs > 0 && choice.work.paths > 0);
+    }
+    let exact = Stage(choose(&tennis().0, 0.05).unwrap().scene).run();
+    assert!(exact.trajectory == tennis().run().trajectory, "to the bit the scene without");
+}
+
+#[test]
+fn grip_is_told_by_the_slip_of_the_first_impact() {
+    for (speed, spin) in [(1.0, 0.0), (12.0, 0.0), (6.0, 150.0), (6.0, -150.0)] {
+        let stage = Stage::new(2.0).down(9.81).floor(rough(0.7, coulomb(0.3)));
+        let stage = stage.thing([0.0, 0.0, 1.0], [speed, 0.0, 0.0], 0.033, Some(0.058)).spinning([0.0, spin, 0.0]);
+        let finding = found(&stage, Effect::Grip);
+        let (predicted, measured) = size(&finding, Quantity::TangentialSpeed);
+        assert!((predicted - measured).abs() < 1e-12 && finding.sizes[0].apart.is_none(), "{predicted} {measured}");
+        assert!(measured.abs() > 0.01, "{speed} {spin}: {measured}");
+    }
+}
+
+#[test]
+fn rolling_resistance_is_told_by_c_rr_g_over_1_plus_alpha() {
+    let grip = Grip::new(0.5).and_then(|grip| grip.with_rolling(0.02)).unwrap();
+    let stage = Stage::new(1.0).down(9.81).floor(rough(0.5, Friction::Grip(grip)));
+    let stage = stage.thing([0.0, 0.0, 0.1], [3.0, 0.0, 0.0], 0.1, None);
+    let (predicted, measured) = size(&found(&stage, Effect::Rolling), Quantity::RollingSpeed);
+    assert!(predicted < -0.03 && (predicted - measured).abs() < 1e-12, "{predicted} {measured}");
 }

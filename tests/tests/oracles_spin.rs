@@ -2,7 +2,9 @@
 
 use carom_dynamics::effects::friction::Friction;
 use carom_dynamics::effects::grip::Grip;
+use carom_dynamics::error::SceneError;
 use carom_dynamics::events::{EventKind, Motion};
+use carom_dynamics::plan::Plan;
 use carom_dynamics::surface::Material;
 use carom_tests::oracle::{Table, U, Worst};
 use carom_tests::stage::{Run, Stage, rough, smooth};
@@ -143,4 +145,11 @@ fn a_surface_without_friction_leaves_the_spin_alone_and_one_without_grip_knows_o
     // A grip of no friction is none.
     let slippery = throw(gripping(0.7, 0.0, 0.0, 0.0)).spinning([5.0, 6.0, 7.0]).run();
     assert_eq!(plain.outcome.state.position.x, slippery.outcome.state.position.x);
+}
+
+#[test]
+fn a_point_cannot_be_turned() {
+    let stage = Stage::new(1.0).down(9.81).floor(gripping(0.5, 0.5, 0.0, 0.0)).ball([0.0, 0.0, 1.0], [0.0; 3], 0.0);
+    let error = Plan::new(&stage.0).expect_err("a point does not turn");
+    assert_eq!(error, SceneError::RadiusMissing { ball: 0, effect: "grip" });
 }

@@ -7,6 +7,7 @@ mod project;
 mod log;
 mod blocks;
 mod commands;
+mod accuracy;
 mod readme;
 mod instructions;
 mod measure;
@@ -20,7 +21,7 @@ use std::process::ExitCode;
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
 /// The tasks, as the README may name them.
-const TASKS: [&str; 7] = ["verify", "readme", "soak", "conformance", "instructions", "peers", "scaling"];
+const TASKS: [&str; 8] = ["verify", "readme", "accuracy", "soak", "conformance", "instructions", "peers", "scaling"];
 
 const HELP: &str = "\
 Usage: cargo xtask TASK
@@ -30,6 +31,7 @@ Tasks:
   verify --only STEP[,STEP]   only these steps
   verify --list               the steps, and what each checks
   readme                      rewrites the generated blocks of README.md
+  accuracy                    measures what accuracy costs in three scenes; plots, tables, README
   conformance                 writes the folder conformance: scenes with the events they must have
   soak --bounces N            bounces balls N times (1e8 say) in scenes of every kind and reports escapes, gains and stalls
   soak --shots M              shoots M points and M balls from inside closed meshes at their edges and vertices
@@ -51,6 +53,7 @@ fn main() -> ExitCode {
             Err(error) => return usage(&error.to_string()),
         },
         ["readme"] => readme::rewrite(),
+        ["accuracy"] => accuracy::run(),
         ["instructions"] => instructions::run(false),
         ["instructions", "--update"] => instructions::run(true),
         ["peers"] => measure::peers(),

@@ -60,6 +60,12 @@ pub enum Command {
     /// before and after it (CUBICSPLINE), so that a flight between two of them is the exact parabola; other motions
     /// are off by no more than single precision is.
     Export(ExportArgs),
+    /// Measure what accuracy costs in time
+    ///
+    /// Runs the scene with every method over a sweep of steps or tolerances: the slides as published, each improvement to it, and the methods
+    /// that a scene can ask for. Compares them with a reference in 128 bits, and prints errors, their parts, the
+    /// orders of convergence, and the cost. The method that the scene names is not looked at.
+    Accuracy(AccuracyArgs),
     /// List all that is wrong with a scene or a mesh
     ///
     /// A scene (.toml, .json) is read as `run` would read it, and the meshes it names are examined. A mesh (.obj, .stl, .ply)
@@ -145,7 +151,7 @@ pub struct ExplainArgs {
     #[arg(value_hint = ValueHint::FilePath)]
     pub scene: PathBuf,
     /// The share of a time, a speed or a way by which an effect must change something to matter
-    #[arg(long, value_name = "SHARE", default_value = "0.01", value_parser = share)]
+    #[arg(long, value_name = "SHARE", default_value = "0.01", value_parser = positive)]
     pub tolerance: f64,
     /// Read the balls from FILE instead of the scene, as `run` does
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
@@ -153,6 +159,39 @@ pub struct ExplainArgs {
     /// Print JSON, with all digits
     #[arg(long)]
     pub json: bool,
+}
+
+/// What `accuracy` takes.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  carom accuracy room.toml
+  carom accuracy room.toml --csv accuracy.csv --plot accuracy.svg
+  carom accuracy room.toml --target-error 1e-6")]
+pub struct AccuracyArgs {
+    /// The scene: a .toml or .json file
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub scene: PathBuf,
+    /// Name the cheapest method whose positions are right to E m, and verify it by a run; exit code 5 if there is none
+    #[arg(long, value_name = "E", value_parser = positive)]
+    pub target_error: Option<f64>,
+    /// Write all measurements to FILE as CSV; `-` is standard output
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub csv: Option<PathBuf>,
+    /// Draw the error over the cost to FILE as SVG; `-` is standard output
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    pub plot: Option<PathBuf>,
+    /// How many balls are measured: the first N of the scene
+    #[arg(long, value_name = "N", default_value = "4")]
+    pub balls: NonZeroUsize,
+    /// How often the step is halved
+    #[arg(long, value_name = "N", default_value = "8", value_parser = clap::value_parser!(u32).range(0..=20))]
+    pub octaves: u32,
+    /// How often the tolerance is divided by ten
+    #[arg(long, value_name = "N", default_value = "10", value_parser = clap::value_parser!(u32).range(0..=11))]
+    pub decades: u32,
+    /// Timed runs of each method, of which the quickest counts; 0 counts the work only
+    #[arg(long, value_name = "N", default_value = "5", value_parser = clap::value_parser!(u32).range(0..=1000))]
+    pub repeats: u32,
 }
 
 /// What `view` takes.
@@ -198,7 +237,7 @@ pub struct PlotArgs {
     /// End at this time, in s [default: when the balls have come to rest]
     #[arg(long, value_name = "TIME")]
     pub to: Option<f64>,
-    /// A scene (.toml, .json) or a table of events (.csv, .jsonl)
+    /// A scene (.toml, .json) or a table of events (.csv)
     #[arg(value_name = "EVENTS-OR-SCENE", value_hint = ValueHint::FilePath)]
     pub file: PathBuf,
     /// How to simulate a scene.
@@ -267,7 +306,7 @@ pub struct CompareArgs {
     #[arg(value_hint = ValueHint::FilePath)]
     pub actual: PathBuf,
     /// Multiply every tolerance by FACTOR, for engines of less precision
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = factor)]
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = positive)]
     pub loosen: f64,
 }
 
@@ -294,6 +333,15 @@ pub struct CompletionsArgs {
     pub shell: Shell,
 }
 
+/// Reads a finite number above 0.
+fn positive(word: &str) -> Result<f64, String> {
+    match word.trim().parse::<f64>() {
+        Ok(x) if x.is_finite() && x > 0.0 => Ok(x),
+        Ok(_) => Err("it must be finite and > 0".to_owned()),
+        Err(_) => Err(format!("`{word}` is not a number")),
+    }
+}
+
 /// Reads `events` or `fps=N`.
 fn keys(word: &str) -> Result<Keys, String> {
     match (word, word.strip_prefix("fps=")) {
@@ -311,18 +359,4 @@ fn frames_per_second(word: &str) -> Result<f64, String> {
         None => number(word)?,
     };
     if fps.is_finite() && fps > 0.0 { Ok(fps) } else { Err("frames per second must be finite and > 0".to_owned()) }
-}
-
-/// Reads a factor, finite and above 0.
-fn factor(word: &str) -> Result<f64, String> {
-    match word.parse::<f64>() {
-        Ok(x) if x.is_finite() && x > 0.0 => Ok(x),
-        _ => Err("a factor is a finite number > 0".to_owned()),
-    }
-}
-
-/// Reads a finite number above 0.
-fn share(word: &str) -> Result<f64, String> {
-    let share: f64 = word.trim().parse().map_err(|_| format!("`{word}` is not a number"))?;
-    if share.is_finite() && share > 0.0 { Ok(share) } else { Err("the share must be finite and > 0".to_owned()) }
 }

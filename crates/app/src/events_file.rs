@@ -127,19 +127,22 @@ impl Actual {
     }
 }
 
-/// A CSV file with a header.
-struct Table {
+/// A CSV file with a header; a line that begins with `#` is a comment.
+pub struct Table {
     path: String,
     columns: StringRecord,
-    records: Vec<StringRecord>,
+    /// The lines.
+    pub records: Vec<StringRecord>,
 }
 
-fn line(record: &StringRecord) -> u64 {
+/// The number of a line, from 1.
+pub fn line(record: &StringRecord) -> u64 {
     record.position().map_or(1, csv::Position::line)
 }
 
 impl Table {
-    fn read(path: &Path) -> Result<Self, AppError> {
+    /// Reads a file.
+    pub fn read(path: &Path) -> Result<Self, AppError> {
         let shown = path.display().to_string();
         let bytes = std::fs::read(path).map_err(|source| AppError::Read { path: shown.clone(), source })?;
         let mut reader =
@@ -153,15 +156,22 @@ impl Table {
         Ok(Self { path: shown, columns, records })
     }
 
-    fn column(&self, name: &str) -> Option<usize> {
+    /// The place of the column of a name.
+    pub fn column(&self, name: &str) -> Option<usize> {
         self.columns.iter().position(|column| column == name)
     }
 
-    fn text<'a>(&self, record: &'a StringRecord, name: &str) -> &'a str {
+    /// A cell; empty if there is none.
+    pub fn text<'a>(&self, record: &'a StringRecord, name: &str) -> &'a str {
         self.column(name).and_then(|i| record.get(i)).unwrap_or_default()
     }
 
-    fn numbers<const N: usize>(&self, record: &StringRecord, names: [&str; N]) -> Result<[Option<f64>; N], AppError> {
+    /// Cells that are numbers, or empty.
+    pub fn numbers<const N: usize>(
+        &self,
+        record: &StringRecord,
+        names: [&str; N],
+    ) -> Result<[Option<f64>; N], AppError> {
         let mut numbers = [None; N];
         for (number, name) in numbers.iter_mut().zip(names) {
             let text = self.text(record, name);
@@ -176,12 +186,14 @@ impl Table {
         Ok(numbers)
     }
 
-    fn count(&self, record: &StringRecord, name: &str) -> Result<u64, AppError> {
+    /// A cell that is a whole number.
+    pub fn count(&self, record: &StringRecord, name: &str) -> Result<u64, AppError> {
         let text = self.text(record, name);
         text.parse().map_err(|_| self.fault(line(record), format!("{name} = `{text}` is not a whole number")))
     }
 
-    fn fault(&self, line: u64, message: String) -> AppError {
+    /// The error that something wrong in a line makes.
+    pub fn fault(&self, line: u64, message: String) -> AppError {
         AppError::Events { path: self.path.clone(), line, message }
     }
 }

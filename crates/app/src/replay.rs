@@ -40,7 +40,7 @@ impl Replay {
     /// Loads the scene at a path and simulates it.
     pub fn of(scene: &Path, how: &SimulationArgs) -> Result<Self, AppError> {
         let loaded = scene::load(scene, how.balls.as_deref())?;
-        let plan = Plan::new(&loaded.scene).map_err(|error| loaded.refuse(&error))?;
+        let plan = loaded.plan(how.quiet)?;
         Self::run(loaded, &plan, how)
     }
 

@@ -29,6 +29,7 @@
 //! # }
 //! ```
 
+pub mod choice;
 mod compare;
 pub mod effect;
 mod flight;
@@ -115,6 +116,8 @@ pub enum Quantity {
     TangentialSpeed,
     /// The speed away from the surface after the first impact, as a share of it.
     ReboundSpeed,
+    /// The speed of a rolling ball when the shorter rolling ends, as a share of that at its start.
+    RollingSpeed,
     /// The number of impacts until the end.
     Impacts,
 }
@@ -184,33 +187,35 @@ impl Explanation {
 pub(crate) struct Runs {
     scene: Scene,
     plan: Plan,
-    /// The first flight of each; none if it begins in contact.
-    flights: Vec<Option<Flight>>,
+    /// Each ball's first flight, and what became of it.
+    flights: Vec<Flight>,
 }
 
 impl Runs {
     /// Runs `balls` of `scene`.
     fn of(scene: Scene, balls: &[usize]) -> Result<Self, SceneError> {
         let plan = Plan::new(&scene)?;
-        let flights = balls.iter().map(|&ball| Flight::of(&plan, ball)).collect();
+        let flights = balls.iter().filter_map(|&ball| Flight::of(&plan, ball)).collect();
         Ok(Self { scene, plan, flights })
     }
 
     /// What the runs evaluated, and the time in s that they simulated.
     fn work(&self) -> (Counters, f64) {
-        let flights = self.flights.iter().flatten();
-        flights.fold((Counters::default(), 0.0), |(mut sum, seconds), flight| {
+        self.flights.iter().fold((Counters::default(), 0.0), |(mut sum, seconds), flight| {
             sum += flight.outcome.counters;
             (sum, seconds + flight.outcome.time)
         })
     }
 }
 
+/// The balls to look at, of so many.
+fn spread(count: usize) -> Vec<usize> {
+    if count <= BALLS { (0..count).collect() } else { (0..BALLS).map(|i| i * count / BALLS).collect() }
+}
+
 /// Explains `scene`.
 pub fn explain(scene: &Scene) -> Result<Explanation, SceneError> {
-    let count = scene.balls.len();
-    let balls: Vec<usize> =
-        if count <= BALLS { (0..count).collect() } else { (0..BALLS).map(|i| i * count / BALLS).collect() };
+    let balls = spread(scene.balls.len());
     let here = Runs::of(scene.clone(), &balls)?;
     let mut explanation = Explanation { balls, entries: Vec::new(), runs: here.flights.len(), work: here.work().0 };
     for effect in Effect::ALL {

@@ -8,6 +8,7 @@ use crate::effects::spin_decay::SpinDecay;
 use crate::error::{SceneError, ValueError, require};
 use crate::forces::Forces;
 use crate::integrators::adaptive::Adaptive;
+use crate::integrators::damped::Damped;
 use crate::integrators::{Integrator, Stepping};
 use crate::scene::{Method, Scene};
 use crate::surface::{Material, Shape};
@@ -138,6 +139,18 @@ impl Plan {
         })
     }
 
+    /// The same plan with a flow effect of your own, which acts on every ball in flight beside those of the scene.
+    ///
+    /// A plan that was exact is computed by the adaptive pair from here on: no closed form knows the effect.
+    pub fn with_flow(mut self, flow: Arc<dyn Flow>) -> Self {
+        self.flows.push(Arc::clone(&flow));
+        self.spinning_flows.push(flow);
+        if self.method == Method::Exact {
+            self.method = Method::Adaptive { tolerance: FLIGHT_TOLERANCE };
+        }
+        self
+    }
+
     /// The balls, in the order of the scene.
     pub fn balls(&self) -> &[Ball] {
         &self.balls
@@ -206,13 +219,18 @@ impl Plan {
         self.surfaces.iter().map(of_ball).collect()
     }
 
-    pub(crate) fn integrator(&self) -> Integrator {
+    pub(crate) fn integrator(&self, forces: &Forces) -> Integrator {
         match self.method {
             Method::Exact => Integrator::Exact,
             Method::Euler { step } => Integrator::Stepping(Stepping::Euler, step),
             Method::SemiImplicitEuler { step } => Integrator::Stepping(Stepping::SemiImplicitEuler, step),
             Method::Rk4 { step } => Integrator::Stepping(Stepping::Rk4, step),
-            Method::Adaptive { tolerance } => Integrator::Adaptive(Adaptive::new(tolerance)),
+            Method::Adaptive { tolerance } => {
+                let rate = if let [flow] = forces.flows { flow.rate(&forces.body) } else { None };
+                rate.map_or(Integrator::Adaptive(Adaptive::new(tolerance)), |rate| {
+                    Integrator::Damped(Damped::new(tolerance, rate))
+                })
+            }
         }
     }
 }

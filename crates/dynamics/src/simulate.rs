@@ -45,7 +45,7 @@ pub fn simulate(plan: &Plan, ball: &Ball, observer: &mut impl Observer) -> Outco
         slip: None,
         forces,
         obstacles: Obstacles::new(plan, ball.radius(), &start, &a),
-        integrator: plan.integrator(),
+        integrator: plan.integrator(&forces),
         state: start,
         clock: Clock::start(),
         contacts: Contacts::new(),

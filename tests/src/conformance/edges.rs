@@ -118,7 +118,7 @@ fn inner_edges() -> Pack {
     let number = |i: u32, j: u32| j * (cells + 1) + i;
     let cell = |i: u32, j: u32| {
         let [a, b, c, d] = [number(i, j), number(i + 1, j), number(i + 1, j + 1), number(i, j + 1)];
-        if (i + j) % 2 == 0 { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] }
+        if (i + j).is_multiple_of(2) { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] }
     };
     let faces: Vec<_> = (0..cells).flat_map(|j| (0..cells).flat_map(move |i| cell(i, j))).collect();
     let text = scene(4.0, [0.0, 0.0, -8.0])

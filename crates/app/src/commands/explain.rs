@@ -4,6 +4,7 @@ use super::print;
 use crate::cli::ExplainArgs;
 use crate::error::AppError;
 use crate::scene;
+use carom_dynamics::explain::choice::Choice;
 use carom_dynamics::explain::effect::Effect;
 use carom_dynamics::explain::{Cost, Entry, Explanation, Finding, Quantity, Size, explain as explain_scene};
 use serde_json::{Value, json};
@@ -14,11 +15,32 @@ pub fn explain(args: &ExplainArgs) -> Result<(), AppError> {
     let loaded = scene::load(&args.scene, args.balls.as_deref())?;
     let explanation = explain_scene(&loaded.scene).map_err(|error| loaded.refuse(&error))?;
     if args.json {
-        let json = serde_json::to_string_pretty(&as_json(&explanation, args.tolerance));
+        let json = serde_json::to_string_pretty(&as_json(&explanation, args.tolerance, loaded.choice.as_ref()));
         return print(&(json.map_err(|e| AppError::Internal(e.to_string()))? + "\n"));
     }
     let name = args.scene.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
-    print(&text(&name, &explanation, loaded.scene.balls.len(), args.tolerance))
+    let choice = loaded.choice.as_ref().map_or_else(String::new, |choice| chosen(choice) + "\n\n");
+    print(&(choice + &text(&name, &explanation, loaded.scene.balls.len(), args.tolerance)))
+}
+
+/// What was chosen, what was left out, and what that costs in accuracy and in work.
+pub fn chosen(choice: &Choice) -> String {
+    let list = |list: &[(Effect, f64)]| match list {
+        [] => "nothing".to_owned(),
+        list => {
+            let each = |(effect, share): &(Effect, f64)| format!("{} ({} %)", effect.name(), figure(100.0 * share));
+            list.iter().map(each).collect::<Vec<_>>().join(", ")
+        }
+    };
+    let percent = |share: f64| figure(100.0 * share);
+    let (kept, left) = (list(&choice.kept), list(&choice.left_out));
+    let (price, tolerance) = (percent(choice.price), percent(choice.tolerance));
+    let work = &choice.work;
+    format!(
+        "effects   kept {kept}; left out {left}\n          what is left out changes flights and landings by {price} %, to {tolerance} % asked for;\n          \
+         chosen by {} runs of single balls, {} paths, {} accelerations",
+        choice.runs, work.paths, work.accelerations
+    )
 }
 
 /// What to write into a scene to have an effect.
@@ -33,6 +55,8 @@ fn key(effect: Effect) -> &'static str {
         Effect::FallingRestitution => "restitution = { coefficient, falls_above } in the material",
         Effect::Friction => "friction = { coulomb = mu } in the material",
         Effect::ImpulseFriction => "friction = { impulse = mu } in the material",
+        Effect::Grip => "friction = { grip = { mu = mu } } in the material",
+        Effect::Rolling => "rolling = c_rr in friction = { grip = { .. } }",
         Effect::Rest => "a surface",
     }
 }
@@ -116,6 +140,7 @@ fn would(size: &Size, finding: &Finding) -> String {
             format!("leave the first impact {percent} {} along the surface", of("faster", "slower"))
         }
         Quantity::ReboundSpeed => format!("rebound {percent} {}", of("faster", "slower")),
+        Quantity::RollingSpeed => format!("roll {percent} {}", of("faster", "slower")),
         Quantity::Impacts => format!("take {} impacts {}", figure(size.measured.abs()), of("more", "fewer")),
     }
 }
@@ -130,6 +155,7 @@ fn compared(size: &Size, finding: &Finding) -> String {
         Quantity::Place => ("place in flight", " m", 1.0),
         Quantity::TangentialSpeed => ("speed along the surface after the first impact", " %", 100.0),
         Quantity::ReboundSpeed => ("rebound speed", " %", 100.0),
+        Quantity::RollingSpeed => ("speed of rolling at its end", " % of that at its start", 100.0),
         Quantity::Impacts => ("impacts", "", 1.0),
     };
     let [measured, predicted] = [size.measured, size.predicted].map(|x| signed(scale * x));
@@ -162,7 +188,7 @@ fn figure(x: f64) -> String {
 }
 
 /// For programs: the same with all digits.
-fn as_json(explanation: &Explanation, tolerance: f64) -> Value {
+fn as_json(explanation: &Explanation, tolerance: f64, choice: Option<&Choice>) -> Value {
     let size = |s: &Size| {
         json!({
             "quantity": quantity(s.quantity), "measured": s.measured, "predicted": s.predicted, "apart": s.apart,
@@ -190,7 +216,20 @@ fn as_json(explanation: &Explanation, tolerance: f64) -> Value {
             "why_not": e.finding.as_ref().err(),
         })
     };
+    let shares = |list: &[(Effect, f64)]| {
+        list.iter().map(|(effect, share)| json!({ "effect": effect.name(), "share": share })).collect::<Vec<_>>()
+    };
+    let chosen = choice.map(|c| {
+        json!({
+            "tolerance": c.tolerance,
+            "kept": shares(&c.kept),
+            "left_out": shares(&c.left_out),
+            "price": c.price,
+            "runs": c.runs,
+        })
+    });
     json!({
+        "chosen": chosen,
         "tolerance": tolerance,
         "called_for": explanation.called_for(tolerance).iter().map(|e| e.effect.name()).collect::<Vec<_>>(),
         "possible": explanation.possible(tolerance).iter().map(|e| e.effect.name()).collect::<Vec<_>>(),
@@ -209,6 +248,7 @@ fn quantity(quantity: Quantity) -> &'static str {
         Quantity::Place => "place_m",
         Quantity::TangentialSpeed => "tangential_speed",
         Quantity::ReboundSpeed => "rebound_speed",
+        Quantity::RollingSpeed => "rolling_speed",
         Quantity::Impacts => "impacts",
     }
 }

@@ -1,5 +1,6 @@
 //! The commands, one file each.
 
+pub mod accuracy;
 pub mod balls;
 pub mod check;
 pub mod compare;

@@ -8,7 +8,6 @@ use crate::output::target::Demand;
 use crate::scene;
 use crate::summary::Tally;
 use crate::terminal::{Progress, say};
-use carom_dynamics::plan::Plan;
 use carom_dynamics::run::run_balls;
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
@@ -18,7 +17,7 @@ use std::time::Instant;
 pub fn run(args: &RunArgs) -> Result<(), AppError> {
     refuse_clashes(args)?;
     let loaded = scene::load(&args.input.scene, args.input.how.balls.as_deref())?;
-    let plan = Plan::new(&loaded.scene).map_err(|error| loaded.refuse(&error))?;
+    let plan = loaded.plan(args.input.how.quiet)?;
     let recording = Recording::new(args, &loaded.scene)?;
     let mut files = Files::open(args, &recording, &loaded.scene)?;
     let start = Instant::now();
@@ -50,6 +49,9 @@ pub fn run(args: &RunArgs) -> Result<(), AppError> {
     let summary = tally.finish(start.elapsed());
     files.finish(&summary.json())?;
     if !args.input.how.quiet {
+        if let Some(choice) = &loaded.choice {
+            say(&super::explain::chosen(choice));
+        }
         say(&summary.text());
     }
     summary.guarded().map_or(Ok(()), |message| Err(AppError::Guard(message)))

@@ -2,8 +2,8 @@
 
 use super::air::Air;
 use super::file::{
-    FallingTable, FrictionTable, GripTable, Integrator, MaterialTable, MethodTable, RestTable, RestitutionOf,
-    RestitutionTable, SceneFile,
+    EffectsShare, EffectsTable, FallingTable, FrictionTable, GripTable, Integrator, MaterialTable, MethodTable,
+    RestTable, RestitutionOf, RestitutionTable, SceneFile,
 };
 use super::problem::Problem;
 use super::shapes;
@@ -41,6 +41,8 @@ pub(super) use at;
 pub struct Builder<'a> {
     pub tree: &'a Node,
     pub problems: Vec<Problem>,
+    /// The error in m for which the method is to be chosen, if it is.
+    pub auto: Option<f64>,
 }
 
 impl Builder<'_> {
@@ -65,6 +67,12 @@ impl Builder<'_> {
         if !(file.duration.is_finite() && file.duration > 0.0) {
             let message = format!("duration is {:?}, but must be finite and > 0, in s", file.duration);
             self.refuse(at!["duration"], Problem::new(message));
+        }
+        if let Some(EffectsTable::Share(EffectsShare { auto })) = file.effects
+            && !(auto.is_finite() && auto > 0.0)
+        {
+            let message = format!("auto is {auto:?}, but must be a finite share > 0");
+            self.refuse(at!["effects", "auto"], Problem::new(message));
         }
         let gravity = file.gravity.and_then(|g| self.accept(at!["gravity"], Gravity::uniform(Vector3::from(g))));
         let air = file.air.as_ref().map_or_else(Air::default, |air| self.air(air));
@@ -137,7 +145,7 @@ impl Builder<'_> {
 
     fn method(&mut self, table: &MethodTable) -> Option<Method> {
         let stepping: Option<fn(f64) -> Method> = match table.integrator {
-            Integrator::Exact | Integrator::Adaptive => None,
+            Integrator::Exact | Integrator::Adaptive | Integrator::Auto => None,
             Integrator::Euler => Some(|step| Method::Euler { step }),
             Integrator::SemiImplicitEuler => Some(|step| Method::SemiImplicitEuler { step }),
             Integrator::Rk4 => Some(|step| Method::Rk4 { step }),
@@ -146,14 +154,14 @@ impl Builder<'_> {
             let problem = Problem::new("`step` is for a stepping method");
             self.refuse(at!["method", "step"], problem.help("stepping: `euler`, `semi-implicit-euler`, `rk4`"));
         }
-        if table.integrator != Integrator::Adaptive && table.tolerance.is_some() {
-            let problem = Problem::new("`tolerance` is for the integrator `adaptive`");
+        if !matches!(table.integrator, Integrator::Adaptive | Integrator::Auto) && table.tolerance.is_some() {
+            let problem = Problem::new("`tolerance` is for the integrators `adaptive` and `auto`");
             self.refuse(at!["method", "tolerance"], problem);
         }
         let key = if stepping.is_some() { "step" } else { "tolerance" };
         let value = match table.integrator {
             Integrator::Exact => return Some(Method::Exact),
-            Integrator::Adaptive => table.tolerance,
+            Integrator::Adaptive | Integrator::Auto => table.tolerance,
             _ => table.step,
         };
         let Some(value) = value else {
@@ -164,6 +172,10 @@ impl Builder<'_> {
         };
         if !(value.is_finite() && value > 0.0) {
             self.refuse(at!["method", key], Problem::new(format!("{key} is {value:?}, but must be finite and > 0")));
+            return None;
+        }
+        if table.integrator == Integrator::Auto {
+            self.auto = Some(value);
             return None;
         }
         Some(stepping.map_or(Method::Adaptive { tolerance: value }, |make| make(value)))

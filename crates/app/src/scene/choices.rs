@@ -1,6 +1,8 @@
 //! Keys whose value is a table, or else a number or a word.
 
-use super::file::{DragLaw, DragOf, DragTable, FallingTable, RestitutionOf, RestitutionTable};
+use super::file::{
+    DragLaw, DragOf, DragTable, EffectsShare, EffectsTable, EffectsWord, FallingTable, RestitutionOf, RestitutionTable,
+};
 use serde::de::value::{MapAccessDeserializer, StrDeserializer};
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
 use std::fmt;
@@ -24,6 +26,28 @@ impl<'de> Deserialize<'de> for DragTable {
             }
         }
         deserializer.deserialize_any(Drag)
+    }
+}
+
+impl<'de> Deserialize<'de> for EffectsTable {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Effects;
+        impl<'de> Visitor<'de> for Effects {
+            type Value = EffectsTable;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("\"auto\", or a table such as { auto = 0.001 }")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<EffectsTable, A::Error> {
+                EffectsShare::deserialize(MapAccessDeserializer::new(map)).map(EffectsTable::Share)
+            }
+
+            fn visit_str<E: Error>(self, word: &str) -> Result<EffectsTable, E> {
+                EffectsWord::deserialize(StrDeserializer::new(word)).map(EffectsTable::Word)
+            }
+        }
+        deserializer.deserialize_any(Effects)
     }
 }
 

@@ -20,6 +20,9 @@ pub struct SceneFile {
     pub duration: f64,
     /// The acceleration of gravity, in m/s^2, such as [0, 0, -9.81]. Without this key there is no gravity.
     pub gravity: Option<[f64; 3]>,
+    /// Which effects of the air are simulated: those that the scene gives, or "auto": just those whose omission would change a flight
+    /// time, a speed or a way by more than 1 %, or { auto = share } for another share. What is left out is told.
+    pub effects: Option<EffectsTable>,
     /// The air and its resistance. Without this table the balls fly in a vacuum.
     pub air: Option<AirTable>,
     /// The materials that surfaces are made of, by name.
@@ -35,6 +38,32 @@ pub struct SceneFile {
     pub rest: Option<RestTable>,
     /// How flights are computed. Without this table: exactly, wherever the scene allows it.
     pub method: Option<MethodTable>,
+}
+
+/// Which effects are simulated: "auto", or { auto = share }.
+#[derive(Debug, Clone, Copy, JsonSchema)]
+#[schemars(untagged)]
+pub enum EffectsTable {
+    /// Chosen to 1 %.
+    Word(EffectsWord),
+    /// Chosen to a share.
+    Share(EffectsShare),
+}
+
+/// How effects are chosen.
+#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum EffectsWord {
+    /// By what they would change.
+    Auto,
+}
+
+/// To which share effects are chosen.
+#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a table such as { auto = 0.001 }")]
+pub struct EffectsShare {
+    /// The share of a time, a speed or a way by which what is left out may change it, greater than 0.
+    pub auto: f64,
 }
 
 /// The air, and what it does to the balls.
@@ -301,7 +330,7 @@ pub struct MethodTable {
     pub integrator: Integrator,
     /// The time step in s of `euler`, `semi-implicit-euler` and `rk4`.
     pub step: Option<f64>,
-    /// The error that `adaptive` allows per step, relative to the size of the motion.
+    /// For `adaptive` the error allowed per step, relative to the size of the motion; for `auto` the largest error of a position, in m.
     pub tolerance: Option<f64>,
 }
 
@@ -319,4 +348,6 @@ pub enum Integrator {
     Rk4,
     /// Runge-Kutta of orders 5 and 4 that chooses its steps.
     Adaptive,
+    /// The cheapest of these that keeps positions right to `tolerance`, with its step: chosen before the run, by measuring, and said.
+    Auto,
 }

@@ -135,6 +135,11 @@ scenes! {
     restitution_of_a_ball_that_has_none: "restitution = 0.75" => "restitution = \"ball\"";
     restitution_of_what: "restitution = 0.75" => "restitution = \"bell\"";
     negative_drag_of_a_ball: "mass = 0.058" => "mass = 0.058\ndrag = -0.5";
+    negative_grip: "coulomb = 0.6" => "grip = { mu = -0.6 }";
+    tangential_above_1: "coulomb = 0.6" => "grip = { mu = 0.6, tangential = 1.5 }";
+    negative_rolling: "coulomb = 0.6" => "grip = { mu = 0.6, rolling = -0.1 }";
+    unknown_effects: "[air]" => "effects = \"all\"\n[air]";
+    effects_to_nothing: "[air]" => "effects = { auto = 0 }\n[air]";
     inertia_above_1: "mass = 0.058" => "mass = 0.058\ninertia = 1.2";
     unknown_material: "material = \"clay\"" => "material = \"caly\"";
     surface_without_material: "material = \"clay\"" => "";

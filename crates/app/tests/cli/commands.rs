@@ -9,6 +9,7 @@ fn help_of_every_command() {
     let commands = [
         "init",
         "run",
+        "accuracy",
         "view",
         "plot",
         "export",
@@ -48,6 +49,8 @@ fn usage_errors_are_2() {
         &["export", "scene.toml", "-o", "x.glb", "--keys", "fps=0"],
         &["plot", "scene.toml", "-o", "x.svg", "--show", "colour"],
         &["init", "scene.toml"],
+        &["accuracy", "scene.toml", "--target-error", "0"],
+        &["accuracy", "scene.toml", "--csv", "-", "--plot", "-"],
         &["completions", "csh"],
     ] {
         let output = folder.run(args);

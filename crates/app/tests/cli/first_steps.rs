@@ -66,11 +66,9 @@ fn there_is_a_manual_page_for_every_command() {
 fn charts_are_made_of_scenes_and_of_tables_of_events() {
     let folder = Folder::with(&[]);
     folder.run(&["init"]);
-    for table in ["events.csv", "events.jsonl"] {
-        folder.run(&["run", "scene.toml", "--events", table, "--quiet"]);
-    }
+    folder.run(&["run", "scene.toml", "--events", "events.csv", "--quiet"]);
     for what in ["height", "speed", "energy", "phase"] {
-        for source in ["scene.toml", "events.csv", "events.jsonl"] {
+        for source in ["scene.toml", "events.csv"] {
             let output = folder.run(&["plot", source, "-o", "-", "--show", what]);
             let chart = String::from_utf8_lossy(&output.stdout).into_owned();
             assert!(chart.contains("</svg>") && chart.contains("<desc"), "{what} of {source}: {}", shown(&output));
@@ -83,13 +81,12 @@ fn charts_are_made_of_scenes_and_of_tables_of_events() {
         text.split_once("<desc").and_then(|(_, rest)| rest.split_once("</desc>")).map(|(desc, _)| desc.to_owned())
     };
     insta::assert_snapshot!("plot_description", described("scene.toml").expect("a description"));
-    let bad = Folder::with(&[("events.csv", b"t,ball\n1,0\n"), ("events.jsonl", b"{}\n"), ("x.svg", b"")]);
+    let bad = Folder::with(&[("events.csv", b"t,ball\n1,0\n"), ("x.svg", b"")]);
     insta::assert_snapshot!("plot_no_table", shown(&bad.run(&["plot", "events.csv", "-o", "chart.svg"])));
-    insta::assert_snapshot!("plot_no_json_table", shown(&bad.run(&["plot", "events.jsonl", "-o", "chart.svg"])));
     insta::assert_snapshot!("plot_unknown_form", shown(&bad.run(&["plot", "x.svg", "-o", "chart.svg"])));
     insta::assert_snapshot!(
         "plot_no_such_ball",
         shown(&folder.run(&["plot", "scene.toml", "-o", "c.svg", "--ball", "7"]))
     );
-    assert_eq!(bad.names(), ["events.csv", "events.jsonl", "x.svg"]);
+    assert_eq!(bad.names(), ["events.csv", "x.svg"]);
 }

@@ -1,5 +1,6 @@
 //! Tests of the real program: what it is given, what it says, what it leaves.
 
+mod accuracy;
 mod balls;
 mod bad_input;
 mod commands;

@@ -156,6 +156,13 @@ impl Flow for Drag {
         Some(self.wind)
     }
 
+    fn rate(&self, body: &Body) -> Option<f64> {
+        match self.law {
+            Law::Linear(k) => Some(k / body.inertia),
+            _ => None,
+        }
+    }
+
     fn count(&self, counters: &mut Counters) {
         counters.drag += 1;
     }

@@ -33,6 +33,11 @@ impl Magnus {
         Ok(Self { wind, ..self })
     }
 
+    /// K rho in kg/m^3, and the wind in m/s.
+    pub(crate) fn parts(&self) -> (f64, Vector3<f64>) {
+        (self.k_rho, self.wind)
+    }
+
     /// Whether it does nothing, however fast a ball spins.
     pub fn is_none(&self) -> bool {
         self.k_rho == 0.0

@@ -4,6 +4,8 @@ use super::effect::{Effect, MORE_REST};
 use super::flight::Flight;
 use super::prediction::{change, landing};
 use super::{Cost, Finding, Quantity, Runs, Size};
+use crate::effects::friction::Friction;
+use crate::effects::grip::slip;
 use crate::effects::restitution::Restitution;
 use crate::events::{Event, Motion};
 use crate::power::logarithm;
@@ -25,11 +27,12 @@ pub(super) fn find(effect: Effect, without: &Runs, with: &Runs, balls: &[usize])
     let mut most: Option<Finding> = None;
     let mut shifts = Vec::new();
     for (i, &ball) in balls.iter().enumerate() {
-        let (Some(before), Some(after)) = (&without.flights[i], &with.flights[i]) else { continue };
+        let (before, after) = (&without.flights[i], &with.flights[i]);
         shifts.push((after.outcome.state.position - before.outcome.state.position).norm());
         let found = match effect {
             _ if effect.is_of_flight() => of_flight(effect, (without, before), (with, after), ball),
             Effect::Rest => of_rest((without, before), (with, after), ball),
+            Effect::Rolling => of_rolling((without, before), (with, after), ball),
             _ => of_impact(effect, (without, before), (with, after), ball),
         };
         if let Some(found) = found
@@ -41,9 +44,9 @@ pub(super) fn find(effect: Effect, without: &Runs, with: &Runs, balls: &[usize])
     shifts.sort_by(f64::total_cmp);
     let end_shift = shifts.get(shifts.len() / 2).copied().unwrap_or(0.0);
     let finding = most.ok_or(match effect {
-        _ if shifts.is_empty() => "no ball begins with a flight",
+        Effect::Rolling => "no ball rolls",
         Effect::Rest => "no ball comes to rest after bouncing",
-        _ if effect.is_of_flight() => "no ball moves",
+        _ if effect.is_of_flight() => "no ball begins with a flight",
         _ => "no ball hits anything at an angle, or at all",
     })?;
     Ok(Finding { end_shift, cost: cost(without, with), ..finding })
@@ -74,6 +77,9 @@ fn of_flight(
     (with, after): (&Runs, &Flight),
     ball: usize,
 ) -> Option<Finding> {
+    if !before.flies || !after.flies {
+        return None;
+    }
     let common = before.seconds().min(after.seconds());
     let way = before.way(common);
     let moved = change(&without.plan, &with.plan, ball, before, common);
@@ -198,10 +204,22 @@ fn of_impact(
         if tangential <= rate_rounding(v.norm()) {
             return None;
         }
-        let kept = |m: &Material| m.friction.slow(along(&v), closing, m.restitution.at(closing)).norm();
+        let of = &with.plan.balls()[ball];
+        let spin = with.scene.spin_decay.map_or(of.spin(), |decay| decay.after(&of.spin(), a.time));
+        let u = slip(of, &v, &spin, &n);
+        let kept = |m: &Material| {
+            let c_r = m.restitution.at(closing);
+            match m.friction {
+                Friction::Grip(grip) => along(&v) + grip.kick(&u, of.inertia(), (1.0 + c_r) * closing),
+                _ => m.friction.slow(along(&v), closing, c_r),
+            }
+        };
+        let kept = |m: &Material| kept(m).norm();
         let predicted = (kept(&m_after) - kept(&m_before)) / tangential;
         let measured = (along(&b.velocity).norm() - along(&a.velocity).norm()) / tangential;
         let number = match effect {
+            // Grips up to mu (1 + c_r) (1 + alpha) / (alpha (1 + e_x)).
+            Effect::Grip => ("slip over closing speed, |u|/|v_n|", u.norm() / closing),
             Effect::ImpulseFriction => ("1 + c_r", 1.0 + m_after.restitution.at(closing)),
             _ => ("closing over tangential speed", closing / tangential),
         };
@@ -209,6 +227,23 @@ fn of_impact(
     };
     let told = Size { apart: together.filter(|_| off(told.1, told.2)), ..size(told, 1.0, 0.0, together) };
     Some(finding(ball, before.way(before.seconds()), number, vec![told]))
+}
+
+/// How much slower a ball rolls for its rolling resistance: c_rr N / (1 + alpha) per second and mass.
+fn of_rolling((without, before): (&Runs, &Flight), (with, after): (&Runs, &Flight), ball: usize) -> Option<Finding> {
+    let ((from, to), (other_from, other_to)) = (before.rolling()?, after.rolling()?);
+    let (from, until) = (from.max(other_from), to.min(other_to));
+    let roll = before.roll?;
+    let Friction::Grip(grip) = with.scene.surfaces[roll.surface].material.friction else { return None };
+    let of = &without.plan.balls()[ball];
+    let load = -roll.normal.dot(&without.plan.constant_acceleration(of));
+    let speed = before.rolling_speed(from);
+    let predicted = -grip.rolling() * load / (1.0 + of.inertia()) * (until - from) / speed;
+    let measured = (after.rolling_speed(until) - before.rolling_speed(until)) / speed;
+    let reason = "the ball rolls over edges, turns, or is in the air";
+    let apart = off(predicted, measured).then_some(reason);
+    let told = Size { quantity: Quantity::RollingSpeed, predicted, measured, apart };
+    Some(finding(ball, speed * (until - from), Some(("c_rr", grip.rolling())), vec![told]))
 }
 
 fn off(predicted: f64, measured: f64) -> bool {

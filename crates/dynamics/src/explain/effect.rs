@@ -3,6 +3,7 @@
 use crate::effects::buoyancy::Buoyancy;
 use crate::effects::drag::Drag;
 use crate::effects::friction::Friction;
+use crate::effects::grip::Grip;
 use crate::effects::magnus::Magnus;
 use crate::effects::restitution::Restitution;
 use crate::effects::spin_decay::SpinDecay;
@@ -26,6 +27,8 @@ const LIGHT_AIR: f64 = 1.0;
 const FRICTION: f64 = 0.3;
 /// The closing speed in m/s above which restitution is taken to fall where a scene does not say.
 const FALLS_ABOVE: f64 = 1.0;
+/// The rolling resistance that is taken where a scene gives none.
+const ROLLING: f64 = 0.01;
 /// How much higher the rest speed is in the scene that the rest test is compared with: without any, bouncing would not end.
 pub(super) const MORE_REST: f64 = 10.0;
 
@@ -50,13 +53,17 @@ pub enum Effect {
     Friction,
     /// The impulse law of friction in place of the book's.
     ImpulseFriction,
+    /// Grip and slip with spin in place of friction that knows of none.
+    Grip,
+    /// Rolling resistance.
+    Rolling,
     /// The rest test.
     Rest,
 }
 
 impl Effect {
     /// All of them, flights first.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 12] = [
         Self::Gravity,
         Self::Drag,
         Self::Wind,
@@ -66,6 +73,8 @@ impl Effect {
         Self::FallingRestitution,
         Self::Friction,
         Self::ImpulseFriction,
+        Self::Grip,
+        Self::Rolling,
         Self::Rest,
     ];
 
@@ -81,6 +90,8 @@ impl Effect {
             Self::FallingRestitution => "restitution falling with speed",
             Self::Friction => "friction",
             Self::ImpulseFriction => "impulse law of friction",
+            Self::Grip => "grip and slip with spin",
+            Self::Rolling => "rolling resistance",
             Self::Rest => "rest",
         }
     }
@@ -93,7 +104,7 @@ impl Effect {
 
     /// Whether `scene` has it, and it does something there.
     pub fn is_on(self, scene: &Scene) -> bool {
-        let spins = scene.balls.iter().any(|ball| ball.spin() != Vector3::zeros());
+        let spins = scene.spins();
         let has = |wanted: fn(&Material) -> bool| scene.surfaces.iter().any(|s| wanted(&s.material));
         match self {
             Self::Gravity => scene.gravity.is_some_and(|g| g.acceleration() != Vector3::zeros()),
@@ -105,13 +116,16 @@ impl Effect {
             Self::FallingRestitution => has(|m| m.restitution.falls_above().is_some()),
             Self::Friction => has(|m| m.friction != Friction::None),
             Self::ImpulseFriction => has(|m| matches!(m.friction, Friction::Impulse(_))),
+            Self::Grip => scene.grips(),
+            Self::Rolling => has(|m| matches!(m.friction, Friction::Grip(grip) if grip.rolling() > 0.0)),
             Self::Rest => !scene.surfaces.is_empty(),
         }
     }
 
     /// Whether nothing in a scene without it tells how strong it is, so that a guess must: then it is not called for, only possible.
     pub fn is_guessed(self) -> bool {
-        matches!(self, Self::Wind | Self::FallingRestitution | Self::Friction | Self::ImpulseFriction)
+        use Effect::{FallingRestitution, Friction, Grip, ImpulseFriction, Rolling, SpinDecay, Wind};
+        matches!(self, Wind | SpinDecay | FallingRestitution | Friction | ImpulseFriction | Grip | Rolling)
     }
 
     /// The same scene without the effect if it has it, else with it; and in words what was taken to be so for that. If that would be the same
@@ -149,6 +163,12 @@ impl Effect {
                     m.friction = Friction::Coulomb(mu);
                 }
             }),
+            Self::Grip => change(scene, |m| {
+                if let Friction::Grip(grip) = m.friction {
+                    m.friction = Friction::impulse(grip.friction()).unwrap_or(m.friction);
+                }
+            }),
+            Self::Rolling => roll(scene, 0.0),
             Self::Rest => {
                 let rest = Plan::new(scene).map_err(|_| "the scene cannot be planned")?.rest();
                 scene.rest = Some(match rest {
@@ -165,7 +185,7 @@ impl Effect {
 
     fn put_in(self, scene: &mut Scene) -> Result<&'static str, &'static str> {
         let lacking = |lacks: fn(&crate::body::Ball) -> bool| scene.balls.iter().any(lacks);
-        let spins = scene.balls.iter().any(|ball| ball.spin() != Vector3::zeros());
+        let spins = scene.spins();
         if matches!(self, Self::Drag | Self::Magnus | Self::Buoyancy) {
             if lacking(|ball| ball.mass().is_none()) {
                 return Err("the balls have no mass, without which it cannot be told");
@@ -244,10 +264,41 @@ impl Effect {
                     }
                 });
             }
+            Self::Grip => {
+                if scene.balls.iter().any(|ball| ball.radius() == 0.0) {
+                    return Err("the balls are points, which do not turn");
+                }
+                let rubs = |m: &Material| matches!(m.friction, Friction::Coulomb(_) | Friction::Impulse(_));
+                if !scene.surfaces.iter().any(|s| rubs(&s.material)) {
+                    return Err("without Coulomb's friction nothing turns a ball");
+                }
+                change(scene, |m| {
+                    if let Friction::Coulomb(mu) | Friction::Impulse(mu) = m.friction {
+                        m.friction = Grip::new(mu.get()).map_or(m.friction, Friction::Grip);
+                    }
+                });
+                return Ok("with the mu of the scene and no tangential restitution");
+            }
+            Self::Rolling => {
+                if !Self::Grip.is_on(scene) {
+                    return Err("nothing rolls");
+                }
+                roll(scene, ROLLING);
+                return Ok("with c_rr = 0.01");
+            }
             Self::Rest => return Err("there is nothing to rest on"),
         }
         Ok("")
     }
+}
+
+/// Gives what grips the rolling resistance `c_rr`.
+fn roll(scene: &mut Scene, c_rr: f64) {
+    change(scene, |m| {
+        if let Friction::Grip(grip) = m.friction {
+            m.friction = grip.with_rolling(c_rr).map_or(m.friction, Friction::Grip);
+        }
+    });
 }
 
 /// Changes the material of every surface.

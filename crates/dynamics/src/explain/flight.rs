@@ -12,8 +12,13 @@ pub(super) struct Flight {
     segments: Vec<Segment>,
     /// The first impact, if there was one.
     pub impact: Option<Event>,
+    /// Whether the ball begins with a flight, and not in contact.
+    pub flies: bool,
     /// Whether it hit several surfaces at once.
     pub together: bool,
+    /// Where it first began to roll, and how it rolled on.
+    pub roll: Option<Event>,
+    rolling: Vec<Segment>,
     /// The surfaces on which bouncing ended.
     pub endings: Vec<usize>,
     /// The end of the run.
@@ -25,6 +30,10 @@ struct Watcher {
     segments: Vec<Segment>,
     impact: Option<Event>,
     together: bool,
+    roll: Option<Event>,
+    rolling: Vec<Segment>,
+    /// Whether the first rolling has ended.
+    rolled: bool,
     /// The surface of the last event, if that was an impact.
     bounced: Option<usize>,
     endings: Vec<usize>,
@@ -37,6 +46,9 @@ impl Observer for Watcher {
             Some(first) if event.kind == EventKind::Impact => self.together |= first.time == event.time,
             _ => {}
         }
+        if self.roll.is_none() && event.kind == EventKind::Roll {
+            self.roll = Some(*event);
+        }
         if self.bounced == Some(event.surface) && matches!(event.kind, EventKind::Slide | EventKind::Rest) {
             self.endings.push(event.surface);
         }
@@ -47,17 +59,32 @@ impl Observer for Watcher {
         if self.impact.is_none() {
             self.segments.push(*segment);
         }
+        match segment.motion {
+            Motion::Rolling if !self.rolled => self.rolling.push(*segment),
+            _ => self.rolled |= !self.rolling.is_empty(),
+        }
     }
 }
 
 impl Flight {
-    /// Of ball number `ball` of `plan`; none if it does not begin with a flight.
+    /// Of ball number `ball` of `plan`; none if there is no such ball.
     pub fn of(plan: &Plan, ball: usize) -> Option<Self> {
         let mut watcher = Watcher::default();
         let outcome = simulate(plan, plan.balls().get(ball)?, &mut watcher);
-        let Watcher { segments, impact, together, endings, .. } = watcher;
+        let Watcher { segments, impact, together, roll, rolling, endings, .. } = watcher;
         let flies = segments.first().is_some_and(|s| s.motion == Motion::Flying);
-        flies.then_some(Self { segments, impact, together, endings, outcome })
+        Some(Self { segments, impact, flies, together, roll, rolling, endings, outcome })
+    }
+
+    /// When the first rolling began and ended, in s.
+    pub fn rolling(&self) -> Option<(f64, f64)> {
+        Some((self.rolling.first()?.time, self.rolling.last()?.end))
+    }
+
+    /// The speed in m/s at `time` of the first rolling.
+    pub fn rolling_speed(&self, time: f64) -> f64 {
+        let after = self.rolling.partition_point(|s| s.time <= time).max(1);
+        self.rolling.get(after - 1).map_or(0.0, |s| s.at(time).velocity.norm())
     }
 
     /// How long it lasts, in s.

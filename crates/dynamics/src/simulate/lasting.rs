@@ -96,7 +96,7 @@ impl<O: Observer> Walk<'_, O> {
         let mut balance = Balance::of(&a, &carriers, &self.state);
         let follows = self.spins && self.settling.is_none();
         self.slip = if follows { self.slipping(&carriers, &balance) } else { None };
-        let rolls = follows && self.slip.is_none();
+        let rolls = follows && self.slip.is_none() && self.is_gripped(&carriers);
         let forces = if rolls { self.forces.of_rolling() } else { self.forces };
         if rolls {
             balance = Balance::of(&forces.acceleration(&self.state, &mut self.counters), &carriers, &self.state);

@@ -129,6 +129,12 @@ impl<O: Observer> Walk<'_, O> {
         Slide { step, stops: false }
     }
 
+    /// Whether one of `carriers` grips: then a ball that does not slip rolls (in a groove as on a plane, which is not quite so).
+    pub(super) fn is_gripped(&self, carriers: &[Carrier]) -> bool {
+        let friction = |c: &Carrier| self.surfaces[c.contact.surface].material.friction;
+        carriers.iter().any(|c| matches!(friction(c), Friction::Grip(_)))
+    }
+
     /// At rest on `contact`: what grips has stopped the ball from turning.
     pub(super) fn stop_turning(&mut self, contact: &Contact) {
         if matches!(self.surfaces[contact.surface].material.friction, Friction::Grip(_)) {
