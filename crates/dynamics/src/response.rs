@@ -220,4 +220,24 @@ mod tests {
             assert!(normals.iter().all(|n| n.dot(&after) >= -1e-14), "{k}");
         }
     }
+
+    #[test]
+    fn two_surfaces_collapse_in_a_wedge_narrower_than_their_restitutions_allow() {
+        // cos^2 >= (sqrt(a) + sqrt(b))^2 / ((1 + a)(1 + b)): for 1/4 and 1/4 from 0.8 on, for 1/25 and 9/25 from 0.672...
+        let of_two = |a: f64, b: f64, cos: f64| {
+            let normals = [Vector3::z(), Vector3::new((1.0 - cos * cos).sqrt(), 0.0, -cos)];
+            let (touched, materials) =
+                (contacts(&Vector3::zeros(), &normals), [a, b].map(|c| material(c, Friction::None)));
+            let [there, back] = [(0, 1), (1, 0)].map(|(i, j)| collapse_in_between(i, j, &touched, &materials));
+            assert_eq!(there, back);
+            there
+        };
+        for (a, b, least) in
+            [(0.25, 0.25, 0.8), (0.04, 0.36, 0.8 / 1.4144f64.sqrt()), (0.0, 0.0, 0.0), (0.0, 1.0, 0.5f64.sqrt())]
+        {
+            assert!(of_two(a, b, least + 0.01), "{a} and {b}");
+            assert!(!of_two(a, b, least - 0.01) && !of_two(a, b, -least - 0.01), "{a} and {b}");
+        }
+        assert!(!of_two(1.0, 1.0, 1.0), "nothing is lost between two perfect walls");
+    }
 }
