@@ -7,6 +7,7 @@ use super::resolution::Original;
 use super::variant::{Approach, Variant};
 use crate::counters::Counters;
 use crate::scene::Method;
+use crate::tolerance::FINEST_TOLERANCE;
 use std::fmt;
 
 /// What the methods are compared with.
@@ -27,7 +28,7 @@ impl fmt::Display for ReferenceKind {
             Self::Extended => f.write_str("a solver of its own in 128 bits: Taylor series, every surface by itself"),
             Self::Itself(effect) => write!(
                 f,
-                "only the adaptive pair at tolerance 1e-14, which shares the code that it judges: {effect} is not in the solver of 128 bits"
+                "only the adaptive pair at tolerance {FINEST_TOLERANCE:e}, which shares the code that it judges: {effect} is not in the solver of 128 bits"
             ),
         }
     }

@@ -18,6 +18,7 @@ use crate::events::Motion;
 use crate::plan::Plan;
 use crate::scene::{Method, Scene};
 use crate::tolerance::FINEST_TOLERANCE;
+use carom_geometry::rounding::UNIT_ROUNDOFF;
 use nalgebra::Vector3;
 
 /// Growth of small differences beyond which positions say nothing.
@@ -125,7 +126,7 @@ impl Stage<'_> {
 
     /// The same run from starts that are an ulp away.
     pub(super) fn run_beside(&self, candidate: &Candidate) -> Vec<Record> {
-        let least = self.plan.farthest * f64::EPSILON;
+        let least = 2.0 * UNIT_ROUNDOFF * self.plan.farthest;
         let one = |ball: &Ball| {
             let ulp = |x: f64| if x == 0.0 { least } else { x.next_up() - x };
             shifted(ball, &ball.start().position.coords.map(ulp))
