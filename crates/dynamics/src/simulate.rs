@@ -17,7 +17,7 @@ use crate::clock::Clock;
 use crate::collision::Obstacles;
 use crate::contacts::{Contact, Contacts};
 use crate::counters::Counters;
-use crate::events::{Ending, Event, EventKind, Motion, Outcome};
+use crate::events::{Bound, Ending, Event, EventKind, Motion, Outcome};
 use crate::forces::Forces;
 use crate::integrators::adaptive::Adaptive;
 use crate::integrators::{Integrator, Step};
@@ -49,6 +49,7 @@ pub fn simulate(plan: &Plan, ball: &Ball, observer: &mut impl Observer) -> Outco
         standstill: 0,
         answered: Contacts::new(),
         moved: 0.0,
+        bound: None,
         low_hops: 0,
         halvings: 0,
         events: 0,
@@ -108,6 +109,8 @@ struct Walk<'a, O> {
     answered: Contacts,
     /// Since when, in s.
     moved: f64,
+    /// How far the impact that happens now may be off.
+    bound: Option<Bound>,
     /// Impacts in a row after which no hop was high.
     low_hops: u32,
     /// How often the timestep is halved because the path closes where the ball does not.
@@ -133,6 +136,7 @@ impl<O: Observer> Walk<'_, O> {
     /// Moves along `step` to `to`, which is at the time `end` if that is known better than by the sum.
     fn travel(&mut self, step: &Step, to: f64, motion: Motion, end: Option<f64>) {
         let time = self.clock.now();
+        self.bound = None;
         match end {
             Some(end) => self.clock.set(end),
             None => self.clock.advance(step.time(to)),
@@ -193,6 +197,7 @@ impl<O: Observer> Walk<'_, O> {
             normal: contact.normal,
             velocity_in,
             velocity: self.state.velocity,
+            bound: self.bound,
         });
         if self.events == EVENT_BUDGET {
             self.give_up(Ending::EventBudget, EventKind::EventBudget);

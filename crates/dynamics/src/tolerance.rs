@@ -103,6 +103,21 @@ pub fn touch_distance(farthest: f64, travelled: f64) -> f64 {
     64.0 * UNIT_ROUNDOFF * (farthest + travelled)
 }
 
+/// How far the time of an impact may be off in s, whose clearance is known to `doubt` (m), at the speed `closing` >= 0 (m/s) and where the clearance
+/// bends by at most `bend` (m/s^2).
+///
+/// In 2 `doubt` / `closing` the clearance changes by 2 `doubt`, less the bend's 2 `bend` (`doubt` / `closing`)^2, which is at most a quarter of a
+/// doubt unless closing^2 < 8 bend doubt. That is a graze: there it takes 8 sqrt(`doubt` / `bend`), in which the bend alone makes 32 doubts and
+/// the speed unmakes at most 8 sqrt(8) of them.
+pub fn impact_time_bound(doubt: f64, closing: f64, bend: f64) -> f64 {
+    if closing * closing >= 8.0 * bend * doubt { 2.0 * doubt / closing } else { 8.0 * (doubt / bend).sqrt() }
+}
+
+/// How far the sum of the times of a ball's flights may be off at time `now` (s), by rounding: 8 units.
+pub fn clock_bound(now: f64) -> f64 {
+    8.0 * UNIT_ROUNDOFF * now
+}
+
 /// The square of the angle (rad) by which normals may differ and still be one: a point that is within `tolerance` of a ball of
 /// `radius` lies up to sqrt(2 radius tolerance) beside the point that is touched; four times that, squared.
 pub fn merge_angle_squared(tolerance: f64, radius: f64) -> f64 {
