@@ -3,8 +3,10 @@
 pub mod catalogue;
 pub mod checker;
 pub mod closed;
+pub mod conformance;
 pub mod data;
 pub mod exact;
+pub mod fuzz;
 pub mod grid;
 pub mod hunt;
 pub mod nasty;

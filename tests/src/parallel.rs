@@ -31,6 +31,6 @@ mod tests {
     #[test]
     fn results_are_in_the_order_of_the_items() {
         assert_eq!(super::map(1000, |i| i * i), (0..1000).map(|i| i * i).collect::<Vec<_>>());
-        assert_eq!(super::map(0, |i| i), []);
+        assert!(super::map(0, |i| i).is_empty());
     }
 }

@@ -8,7 +8,7 @@ use crate::world::U;
 use carom_dynamics::events::{Ending, EventKind};
 use carom_dynamics::observer::Trajectory;
 use carom_dynamics::surface::Shape;
-use nalgebra::Vector3;
+use nalgebra::{Point3, Vector3};
 use std::sync::Arc;
 
 /// Shots from one start.
@@ -154,7 +154,9 @@ fn judge(closed: &Closed, run: &Run, between: f64, tally: &mut Tally, name: impl
     let impacts = run.trajectory.events.iter().filter(|e| e.kind == EventKind::Impact).count() as u64;
     tally.impacts += impacts;
     let middle = run.at(run.outcome.time * between);
-    let inside = closed.is_inside(&run.outcome.state.position) && closed.is_inside(&middle);
+    let start = run.at(0.0);
+    let inside = |x: &Point3<f64>| closed.is_inside(x) || closed.is_with(&start, x);
+    let inside = inside(&run.outcome.state.position) && inside(&middle);
     let guarded = run.outcome.ending != Ending::Completed;
     tally.missed += u64::from(impacts == 0);
     tally.outside += u64::from(!inside);

@@ -16,8 +16,17 @@ fn throw() -> Stage {
 
 #[track_caller]
 fn assert_same(plain: &Run, other: &Run) {
-    assert_eq!(plain.trajectory, other.trajectory);
+    // Not printed: it is long.
+    assert!(plain.trajectory == other.trajectory, "another trajectory");
     assert_eq!(plain.outcome, other.outcome, "counts and all");
+}
+
+/// A run as one would see it who does not see that the ball turns.
+fn unturned(mut run: Run) -> Run {
+    run.trajectory.events.iter_mut().for_each(|event| event.spin = None);
+    run.trajectory.segments.iter_mut().for_each(|segment| segment.turning = None);
+    run.outcome.spin = None;
+    run
 }
 
 fn still_air() -> Drag {
@@ -60,8 +69,8 @@ fn spin_without_the_magnus_force_or_one_of_zero_leaves_the_flight_alone() {
     for stage in [throw(), throw().drag(still_air())] {
         let plain = stage.run();
         let spinning = stage.spinning([10.0, 200.0, -30.0]).spin_decay(3.0);
-        assert_same(&plain, &spinning.run());
-        assert_same(&plain, &spinning.magnus(Magnus::new(1.0, 0.0).unwrap()).run());
+        assert_same(&plain, &unturned(spinning.run()));
+        assert_same(&plain, &unturned(spinning.magnus(Magnus::new(1.0, 0.0).unwrap()).run()));
     }
 }
 

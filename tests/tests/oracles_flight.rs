@@ -119,3 +119,65 @@ fn restitution_that_falls_with_the_speed_gives_each_impact_its_own() {
     }
     worst.settle();
 }
+
+/// v = w + g / k + (v0 - w - g / k) e^(-k t), with k from nothing to 10^12 per second: the explicit methods would need a step for each of these.
+#[test]
+fn h30_linear_drag_of_any_strength_is_its_closed_form_in_few_steps() {
+    let (mut speeds, mut places, mut steps) = (Worst::of("velocity"), Worst::of("place"), 0);
+    let (g, t) = (9.81, 1.5);
+    let (v0, wind) = (Vector3::new(3.0, 0.0, 4.0), Vector3::new(0.0, 2.0, 0.0));
+    for exponent in -12..=12 {
+        let k = 10f64.powi(exponent);
+        for (down, wind) in [(g, Vector3::zeros()), (0.0, Vector3::zeros()), (g, wind)] {
+            let drag = Drag::linear(k).unwrap().in_wind(wind).unwrap();
+            let run = Stage::new(t).down(down).drag(drag).thing([0.0; 3], v0, 0.1, Some(1.0)).run();
+            // By series where e^-z - 1 has no digits.
+            let z = k * t;
+            let one = if z < 1e-3 { 1.0 - z / 2.0 + z * z / 6.0 } else { -(-z).exp_m1() / z };
+            let two = if z < 1e-3 { 0.5 - z / 6.0 + z * z / 24.0 } else { (1.0 - one) / z };
+            let a = Vector3::new(0.0, 0.0, -down) - (v0 - wind) * k;
+            let (v, x) = (v0 + a * (t * one), v0 * t + a * (t * t * two));
+            let state = run.outcome.state;
+            let place = || format!("k = {k:e}, g = {down}, wind {wind:?}");
+            // The closed form for reference loses what v0 and its decay have in common.
+            let size = v0.norm() + down * t;
+            speeds.see((state.velocity - v).norm(), 0.0, 1e-8 * size, place);
+            places.see((state.position.coords - x).norm(), 0.0, 1e-8 * size * t, place);
+            let mut speed = (v0 - wind).norm() + down * t;
+            for segment in &run.trajectory.segments {
+                let now = (segment.step.end().velocity - wind).norm();
+                assert!(now <= speed + 1e-12, "{}: {now} after {speed}", place());
+                speed = if down == 0.0 { now } else { speed };
+            }
+            steps = steps.max(run.outcome.counters.paths);
+        }
+    }
+    println!("at most {steps} steps");
+    // Without gravity and wind it is slowed down to nothing, 5e-324 m/s: 745 times by 1/e, in steps of 0.04 k / m.
+    assert!(steps < 20_000, "{steps}");
+    Worst::settle_all([speeds, places]);
+}
+
+#[test]
+fn h30_a_ball_sinks_to_the_floor_through_the_stiffest_air_and_gains_no_energy() {
+    for k in [1e3, 1e6, 1e9, 1e12] {
+        // It sinks with g / k, 1 mm deep in 100 s for 10^6.
+        let (g, seconds) = (9.81, 100.0);
+        let depth = 0.5 * seconds * g / k;
+        let stage = Stage::new(seconds).down(g).drag(Drag::linear(k).unwrap()).floor(smooth(0.8));
+        let run = stage.thing([0.0, 0.0, 0.1 + depth], [1.0, 0.0, 0.0], 0.1, Some(1.0)).run();
+        let mut energy = f64::INFINITY;
+        for segment in &run.trajectory.segments {
+            for f in [0.0, 0.5, 1.0] {
+                let state = segment.step.at(f * segment.to);
+                let now = 0.5 * state.velocity.norm_squared() + g * (state.position.z - 0.1);
+                assert!(now <= energy + 1e-9 * (now.abs() + g * depth) + 1e-15, "k = {k:e}: {now} after {energy}");
+                assert!(state.position.z >= 0.1 - 1e-14, "k = {k:e}: {}", state.position.z);
+                energy = now;
+            }
+        }
+        let landed = run.trajectory.events.first().map(|event| event.time);
+        assert!(landed.is_some_and(|t| (t - 50.0).abs() < 1.0), "k = {k:e}: {landed:?}");
+        assert!(run.outcome.counters.paths < 20_000, "{}", run.outcome.counters.paths);
+    }
+}

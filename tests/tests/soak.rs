@@ -23,13 +23,13 @@ fn the_shares_of_the_families_are_the_whole() {
 #[test]
 fn h5_what_is_shot_at_edges_from_inside_stays_inside() {
     for closed in Closed::all() {
-        if matches!(closed.treatment, Treatment::Squashed | Treatment::Tiny) {
-            continue;
-        }
+        // FIXME: sliding on squashed faces is ended by a guard or stalls, and so is some flying in tiny bodies; outside is none.
+        let ends = !matches!(closed.treatment, Treatment::Squashed | Treatment::Tiny);
         for shot in SHOTS {
-            let tally = shoot(&closed, shot, 24, 1);
-            assert!(tally.is_sound(), "{} {:?}: {tally:#?}", closed.body, closed.treatment);
-            assert!(shot.ball || tally.met > 0, "{} {:?}: {tally:#?}", closed.body, closed.treatment);
+            let tally = shoot(&closed, shot, if ends { 24 } else { 4 }, 1);
+            assert_eq!(tally.outside, 0, "{} {:?}: {tally:#?}", closed.body, closed.treatment);
+            assert!(tally.is_sound() || !ends, "{} {:?}: {tally:#?}", closed.body, closed.treatment);
+            assert!(shot.ball || !ends || tally.met > 0, "{} {:?}: {tally:#?}", closed.body, closed.treatment);
         }
     }
 }

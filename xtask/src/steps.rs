@@ -2,7 +2,7 @@
 
 use crate::log::Log;
 use crate::project::Project;
-use crate::{Result, commands, readme};
+use crate::{Result, accuracy, commands, readme};
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
@@ -18,7 +18,7 @@ pub struct Step {
 
 /// Cheap ones first. The debug profile is built once, for the tests; the release profile once, for the scenes and the
 /// README.
-pub const STEPS: [Step; 10] = [
+pub const STEPS: [Step; 11] = [
     Step { name: "format", what: "the code is formatted", run: format },
     Step { name: "clippy", what: "no warning of rustc or clippy, in any target", run: clippy },
     Step { name: "tests", what: "the tests of every crate; no snapshot is written", run: tests },
@@ -32,6 +32,11 @@ pub const STEPS: [Step; 10] = [
         run: checker,
     },
     Step { name: "scenes", what: "the scenes of the program are valid and run to their end", run: scenes },
+    Step {
+        name: "accuracy",
+        what: "what accuracy costs is measured as it is told; time is not compared",
+        run: accuracy,
+    },
     Step { name: "readme", what: "the README's commands exist and its generated blocks are fresh", run: readme },
 ];
 
@@ -110,6 +115,14 @@ fn scenes(project: &Project, log: &mut Log) -> Result<bool> {
         passed &= log.run(&mut carom.command(["run", &scene]))?;
     }
     Ok(passed)
+}
+
+fn accuracy(project: &Project, log: &mut Log) -> Result<bool> {
+    let wrong = accuracy::stale(project, &project.carom()?)?;
+    for sentence in &wrong {
+        log.line(sentence)?;
+    }
+    Ok(wrong.is_empty())
 }
 
 fn readme(project: &Project, log: &mut Log) -> Result<bool> {

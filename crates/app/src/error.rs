@@ -27,12 +27,18 @@ pub enum AppError {
     /// A list of balls is not valid.
     #[error("{path}:{line}: {message}")]
     Balls { path: String, line: u64, message: String, help: Option<String> },
+    /// A file of events is not valid.
+    #[error("{path}:{line}: {message}")]
+    Events { path: String, line: u64, message: String },
     /// A mesh is not valid.
     #[error("{0}")]
     Mesh(String),
     /// Balls were ended by a guard.
     #[error("{0}")]
     Guard(String),
+    /// A target was not met.
+    #[error("{0}")]
+    Target(String),
 }
 
 impl AppError {
@@ -41,8 +47,9 @@ impl AppError {
         ExitCode::from(match self {
             Self::Read { .. } | Self::Write { .. } | Self::Internal(_) => 1,
             Self::Usage(_) => 2,
-            Self::Scene(_) | Self::Balls { .. } | Self::Mesh(_) => 3,
+            Self::Scene(_) | Self::Balls { .. } | Self::Events { .. } | Self::Mesh(_) => 3,
             Self::Guard(_) => 4,
+            Self::Target(_) => 5,
         })
     }
 

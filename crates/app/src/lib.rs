@@ -1,15 +1,34 @@
 //! Bouncing-ball simulation from the command line: scene files in, events, frames and summaries out.
 //!
-//! The program is thin: what a ball does is told by `carom-dynamics`, and where surfaces are by `carom-geometry`.
+//! The program is thin: what a ball does is told by [`carom_dynamics`], and where surfaces are by [`carom_geometry`]; whoever writes a program
+//! of their own begins there. This crate is the command `carom`, which explains itself with `--help`, a [`guide`] through the
+//! chapter that it is built from, [charts](plot), and two readers of files:
+//!
+//! ```no_run
+//! use carom_dynamics::{observer::Trajectory, plan::Plan, simulate::simulate};
+//!
+//! let scene = carom::read_scene("room.toml".as_ref())?;
+//! let plan = Plan::new(&scene)?;
+//! let mut run = Trajectory::default();
+//! simulate(&plan, &plan.balls()[0], &mut run);
+//! println!("{} events", run.events.len());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! The feature `parquet`, on by default, lets events and frames be written as Parquet.
 
 mod balls;
 mod cli;
 mod commands;
+mod curves;
 mod error;
+mod events_file;
+pub mod guide;
 mod mesh_file;
 mod model;
 mod output;
 pub mod plot;
+mod presets;
 mod replay;
 mod scene;
 mod stage;
@@ -29,13 +48,20 @@ use std::process::ExitCode;
 pub fn main() -> ExitCode {
     let cli = Cli::parse();
     let result = match &cli.command {
+        Command::Init(args) => commands::init::init(args),
         Command::Run(args) => commands::run::run(args),
+        Command::Explain(args) => commands::explain::explain(args),
+        Command::Accuracy(args) => commands::accuracy::accuracy(args),
         Command::View(args) => commands::view::view(args),
+        Command::Plot(args) => commands::plot::plot(args),
         Command::Export(args) => commands::export::export(args),
         Command::Check(args) => commands::check::check(args),
+        Command::Compare(args) => commands::compare::compare(args),
         Command::Schema => commands::schema::schema(),
+        Command::Balls(args) => commands::balls::balls(args),
         Command::Materials(args) => commands::materials::materials(args),
         Command::Completions(args) => commands::completions::completions(args),
+        Command::Man(args) => commands::man::man(args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

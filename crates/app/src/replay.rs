@@ -1,6 +1,6 @@
 //! A whole run in memory, for what shows it: the page, the model, the plot.
 
-use crate::cli::SceneArgs;
+use crate::cli::SimulationArgs;
 use crate::error::AppError;
 use crate::scene::{self, Loaded};
 use crate::summary::{Summary, Tally};
@@ -12,6 +12,7 @@ use carom_dynamics::run::run_balls;
 use carom_dynamics::scene::Scene;
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
+use std::path::Path;
 use std::time::Instant;
 
 /// More stretches of motion than this are more than a page or a model can show; they would take a gigabyte of memory.
@@ -36,19 +37,19 @@ pub struct BallRun {
 }
 
 impl Replay {
-    /// Loads the scene and simulates it.
-    pub fn of(args: &SceneArgs) -> Result<Self, AppError> {
-        let loaded = scene::load(&args.scene, args.balls.as_deref())?;
-        let plan = Plan::new(&loaded.scene).map_err(|error| loaded.refuse(&error))?;
-        Self::run(loaded, &plan, args)
+    /// Loads the scene at a path and simulates it.
+    pub fn of(scene: &Path, how: &SimulationArgs) -> Result<Self, AppError> {
+        let loaded = scene::load(scene, how.balls.as_deref())?;
+        let plan = loaded.plan(how.quiet)?;
+        Self::run(loaded, &plan, how)
     }
 
-    fn run(loaded: Loaded, plan: &Plan, args: &SceneArgs) -> Result<Self, AppError> {
+    fn run(loaded: Loaded, plan: &Plan, how: &SimulationArgs) -> Result<Self, AppError> {
         let start = Instant::now();
         let mut tally = Tally::new(&loaded.scene);
-        let mut progress = Progress::new(loaded.scene.balls.len(), args.quiet);
+        let mut progress = Progress::new(loaded.scene.balls.len(), how.quiet);
         let (mut balls, mut segments) = (Vec::new(), 0);
-        let threads = args.threads.map(NonZeroUsize::get);
+        let threads = how.threads.map(NonZeroUsize::get);
         let simulated = run_balls(
             plan,
             threads,

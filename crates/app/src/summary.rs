@@ -26,6 +26,9 @@ pub struct Summary {
     resting: usize,
     /// How many were sliding.
     sliding: usize,
+    /// How many were rolling; left out where nothing spins.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    rolling: Option<usize>,
     /// How many were flying.
     flying: usize,
     /// How many of the flying ones had not even the box of all surfaces before them, in the direction of gravity or, without it,
@@ -69,6 +72,7 @@ pub struct Tally<'a> {
     ball_seconds: f64,
     resting: usize,
     sliding: usize,
+    rolling: usize,
     flying: usize,
     off_the_map: usize,
     ended_early: Vec<EndedEarly>,
@@ -87,6 +91,7 @@ impl<'a> Tally<'a> {
             ball_seconds: 0.0,
             resting: 0,
             sliding: 0,
+            rolling: 0,
             flying: 0,
             off_the_map: 0,
             ended_early: Vec::new(),
@@ -102,6 +107,7 @@ impl<'a> Tally<'a> {
         match outcome.motion {
             Motion::Resting => self.resting += 1,
             Motion::Sliding => self.sliding += 1,
+            Motion::Rolling => self.rolling += 1,
             Motion::Flying => self.flying += 1,
         }
         if let Some(bounds) = &self.bounds
@@ -113,6 +119,9 @@ impl<'a> Tally<'a> {
         if let Some(start) = self.scene.balls.get(ball) {
             let mass = start.mass().filter(|_| self.masses_known).unwrap_or(1.0);
             self.energy.add(mass, &start.start(), &outcome.state);
+            if let Some(spin) = outcome.spin {
+                self.energy.add_rotation(mass, start.inertia(), start.radius(), [start.spin(), spin]);
+            }
         }
         let ending = match outcome.ending {
             Ending::Completed => return,
@@ -135,6 +144,7 @@ impl<'a> Tally<'a> {
             impacts: self.counters.impacts,
             resting: self.resting,
             sliding: self.sliding,
+            rolling: self.scene.spins().then_some(self.rolling),
             flying: self.flying,
             off_the_map: self.bounds.is_some().then_some(self.off_the_map),
             ended_early: self.ended_early,
@@ -205,10 +215,11 @@ impl Summary {
             Some(change) if *change > 0.0 => format!(", {} % gained", percent(*change)),
             _ => String::new(),
         };
+        let rolling = self.rolling.map_or_else(String::new, |n| format!("{} rolling, ", count(n as u64)));
         vec![
             line("balls", &count(self.balls as u64)),
             line("impacts", &count(self.impacts)),
-            line("at end", &format!("{resting} resting, {sliding} sliding, {flying} flying{off}")),
+            line("at end", &format!("{resting} resting, {sliding} sliding, {rolling}{flying} flying{off}")),
             line("time", &format!("{} s simulated{clock}", self.duration)),
             line("energy", &format!("{start:.6e} {unit} at start, {end:.6e} {unit} at end{change}")),
         ]

@@ -5,14 +5,18 @@
 //! what it judges, takes the error apart (R26), fits orders of convergence, and counts and times the work.
 //! [`choose`] answers the question behind it: the cheapest method that is good enough.
 
+mod candidate;
 mod compare;
+mod conclude;
 mod course;
 mod fit;
 mod measure;
 mod real;
 mod record;
 mod report;
+mod resolution;
 mod settle;
+mod stage;
 mod taylor;
 pub mod textbook;
 mod variant;
@@ -22,5 +26,9 @@ pub use compare::{Ends, Errors, EulerLaws, Shares};
 pub use course::Reach;
 pub use fit::Order;
 pub use measure::{Effort, choose, measure};
-pub use report::{Cost, Measurement, ReferenceKind, Remark, Report, Sweep, work};
+pub use report::{Cost, Measurement, ReferenceKind, Remark, Report, Resolution, Sweep, work};
+pub use resolution::Original;
 pub use variant::{Approach, Parameter, Variant};
+
+#[cfg(test)]
+mod tests;

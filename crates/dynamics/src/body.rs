@@ -23,6 +23,8 @@ pub struct Ball {
     mass: Option<f64>,
     spin: Vector3<f64>,
     inertia: f64,
+    drag: Option<f64>,
+    restitution: Option<f64>,
 }
 
 impl Ball {
@@ -41,7 +43,8 @@ impl Ball {
             require("mass", mass, "finite and > 0, in kg", mass.is_finite() && mass > 0.0)?;
         }
         let (spin, inertia) = (Vector3::zeros(), SOLID_SPHERE);
-        Ok(Self { start: State { position, velocity }, radius, mass, spin, inertia })
+        let start = State { position, velocity };
+        Ok(Self { start, radius, mass, spin, inertia, drag: None, restitution: None })
     }
 
     /// The same with the angular velocity `spin` in rad/s, right-handed.
@@ -54,6 +57,19 @@ impl Ball {
     pub fn with_inertia(self, alpha: f64) -> Result<Self, ValueError> {
         let inertia = require("inertia", alpha, "above 0, and 1 at most", alpha > 0.0 && alpha <= 1.0)?;
         Ok(Self { inertia, ..self })
+    }
+
+    /// The same with a drag coefficient of its own, which a drag law may ask for.
+    pub fn with_drag(self, coefficient: f64) -> Result<Self, ValueError> {
+        let ok = coefficient.is_finite() && coefficient >= 0.0;
+        require("drag", coefficient, "finite and >= 0", ok)?;
+        Ok(Self { drag: Some(coefficient), ..self })
+    }
+
+    /// The same with a coefficient of restitution of its own, in [0, 1], which a surface may ask for.
+    pub fn with_restitution(self, c_r: f64) -> Result<Self, ValueError> {
+        require("restitution", c_r, "between 0 and 1", (0.0..=1.0).contains(&c_r))?;
+        Ok(Self { restitution: Some(c_r), ..self })
     }
 
     /// Where the ball starts, and how fast.
@@ -81,6 +97,16 @@ impl Ball {
         self.inertia
     }
 
+    /// Its own drag coefficient, if it has one.
+    pub fn drag(&self) -> Option<f64> {
+        self.drag
+    }
+
+    /// Its own coefficient of restitution, if it has one.
+    pub fn restitution(&self) -> Option<f64> {
+        self.restitution
+    }
+
     /// Its volume in m^3.
     pub fn volume(&self) -> f64 {
         4.0 / 3.0 * std::f64::consts::PI * self.radius * self.radius * self.radius
@@ -94,6 +120,8 @@ pub struct Body {
     pub radius: f64,
     /// What a force is divided by to be an acceleration, in kg: the mass, and what it takes along of the air.
     pub inertia: f64,
+    /// Its own drag coefficient.
+    pub drag: f64,
     /// Angular velocity in rad/s.
     pub spin: Vector3<f64>,
 }

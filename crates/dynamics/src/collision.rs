@@ -15,6 +15,7 @@ use carom_geometry::rounding::contact_doubt;
 use carom_geometry::site::{Bend, RegionBound, Site};
 use carom_geometry::sweep::Work;
 use nalgebra::{Point3, Vector3};
+use smallvec::SmallVec;
 
 /// The earliest collision of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,8 +37,8 @@ pub struct Return {
     hold: Hold,
     /// Where, and at what slope.
     pub entry: Entry,
-    /// Faces at the contact, and the f before which the ball cannot touch them again.
-    free: Option<(usize, Vec<u32>, f64)>,
+    /// Where on a mesh the contact is, and the f before which the ball cannot touch the faces there again.
+    free: Option<(usize, Site, f64)>,
 }
 
 /// The returns of one step, one for each contact.
@@ -125,7 +126,13 @@ impl<'a> Obstacles<'a> {
         contacts
             .iter()
             .map(|contact| {
-                let hold = |until| Hold { normal: contact.normal, point: self.anchor(contact), slack, until };
+                let hold = |until| Hold {
+                    normal: contact.normal,
+                    point: self.anchor(contact),
+                    slack,
+                    until,
+                    face: contact.site.map(|site| site.face()),
+                };
                 if contact.lasting {
                     let until = f64::INFINITY;
                     return Return { hold: hold(until), entry: Entry::Never, free: self.free(contact, until) };
@@ -155,9 +162,9 @@ impl<'a> Obstacles<'a> {
         }
     }
 
-    /// The faces at what is touched, with the f until which the ball is free of them.
-    fn free(&self, contact: &Contact, until: f64) -> Option<(usize, Vec<u32>, f64)> {
-        Some((contact.surface, self.mesh(contact.surface)?.faces_at(contact.site?), until))
+    /// The place of a mesh that is touched, with the f until which the ball is free of its faces.
+    fn free(&self, contact: &Contact, until: f64) -> Option<(usize, Site, f64)> {
+        Some((contact.surface, contact.site?, until))
     }
 
     /// The shape that the centre follows along a contact.
@@ -221,14 +228,16 @@ impl<'a> Obstacles<'a> {
                 earliest = Some(Hit { f, surface: *surface, face: None, rate: Some(rate) });
             }
         }
-        let holds: ArrayVec<Hold, MAX_CONTACTS> = returns.iter().map(|r| r.hold).collect();
-        let ball = MovingBall { path: &step.path, radius: self.mesh_radius, holds: &holds };
         for (surface, mesh) in &self.plan.meshes {
+            let here = |r: &Return| r.hold.face.filter(|_| r.free.is_some_and(|(s, ..)| s == *surface));
+            let holds: ArrayVec<Hold, MAX_CONTACTS> =
+                returns.iter().map(|r| Hold { face: here(r), ..r.hold }).collect();
+            let ball = MovingBall { path: &step.path, radius: self.mesh_radius, holds: &holds };
             let to = earliest.map_or(step.to, |hit| hit.f);
             let mut work = Work::default();
             let free_until = |face: u32| {
                 let of_this = returns.iter().filter_map(|r| r.free.as_ref()).filter(|(s, ..)| s == surface);
-                of_this.filter(|(_, faces, _)| faces.contains(&face)).map(|(.., f)| *f).fold(0.0, f64::max)
+                of_this.filter(|(_, site, _)| mesh.is_at(face, *site)).map(|(.., f)| *f).fold(0.0, f64::max)
             };
             let found = mesh.first_contact(&ball, to, free_until, &mut work);
             counters.add(&work);
@@ -266,7 +275,7 @@ impl<'a> Obstacles<'a> {
             rate: normal.dot(velocity),
             lasting: false,
         };
-        let mut all: Vec<Contact> = Vec::new();
+        let mut all: SmallVec<[Contact; MAX_CONTACTS]> = SmallVec::new();
         for ((surface, plane), side) in self.plan.planes.iter().zip(&self.sides) {
             if plane.clearance(position, self.radius, *side) <= tolerance {
                 all.push(contact(*surface, None, plane.normal().into_inner() * side.sign()));

@@ -2,6 +2,7 @@
 
 use crate::body::State;
 use crate::effects::gravity::Gravity;
+use nalgebra::Vector3;
 
 /// The kinetic energy per mass, v^2 / 2, in J/kg.
 pub fn kinetic(state: &State) -> f64 {
@@ -45,6 +46,14 @@ impl EnergyBalance {
         self.mass += mass;
         self.start += mass * (kinetic(start) + before);
         self.end += mass * (kinetic(end) + after);
+    }
+
+    /// Adds the rotation of a ball of `mass` with the moment of inertia `alpha` m r^2 and the `radius` in m, whose angular velocity went from
+    /// `start` to `end` (rad/s).
+    pub fn add_rotation(&mut self, mass: f64, alpha: f64, radius: f64, [start, end]: [Vector3<f64>; 2]) {
+        let energy = |spin: Vector3<f64>| 0.5 * mass * alpha * (spin * radius).norm_squared();
+        self.start += energy(start);
+        self.end += energy(end);
     }
 
     /// At the start, in J (in J/kg summed over the balls, if each counts as 1 kg).

@@ -53,6 +53,24 @@ pub enum SceneError {
         /// The effect that needs it.
         effect: &'static str,
     },
+    /// A law asks each ball for something of its own, and this one does not have it.
+    #[error("ball {ball} has no {what} of its own, and {effect} asks for it")]
+    OwnMissing {
+        /// Index of the ball in the scene, from 0.
+        ball: usize,
+        /// What it does not have.
+        what: &'static str,
+        /// What asks for it.
+        effect: &'static str,
+    },
+    /// An effect turns the ball, and the ball is a point.
+    #[error("ball {ball} has radius 0, and {effect} turns balls about their centre; give it a radius in m")]
+    RadiusMissing {
+        /// Index of the ball in the scene, from 0.
+        ball: usize,
+        /// The effect that needs it.
+        effect: &'static str,
+    },
     /// The exact flight exists for constant acceleration only.
     #[error("the exact flight exists only under constant acceleration, and this scene has {effect}; use `adaptive`")]
     NoExactFlight {

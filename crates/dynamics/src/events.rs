@@ -12,6 +12,8 @@ pub enum EventKind {
     Impact,
     /// Bouncing has ended, sliding begins; what friction took in the last hops, it took between `velocity_in` and `velocity`.
     Slide,
+    /// Slipping has ended, rolling begins.
+    Roll,
     /// The ball came to rest.
     Rest,
     /// Contact was lost.
@@ -52,6 +54,8 @@ pub struct Event {
     pub velocity: Vector3<f64>,
     /// How far `time` and `position` may be off, of an impact and of what happens with it; none where sliding or a guard ends in something else.
     pub bound: Option<Bound>,
+    /// Angular velocity just after, in rad/s, if the scene calls for it.
+    pub spin: Option<Vector3<f64>>,
 }
 
 /// How far a computed impact may be from the exact one of the path that led to it, with all its numbers from the start of that stretch taken as
@@ -74,6 +78,8 @@ pub enum Motion {
     Flying,
     /// In lasting contact, and moving.
     Sliding,
+    /// In lasting contact, and moving so that the point of contact does not.
+    Rolling,
     /// In lasting contact, and at rest.
     Resting,
 }
@@ -106,6 +112,8 @@ pub struct Outcome {
     pub time: f64,
     /// Where, and how fast.
     pub state: State,
+    /// Its angular velocity in rad/s, if the scene calls for it.
+    pub spin: Option<Vector3<f64>>,
     /// How it moved at the end.
     pub motion: Motion,
     /// What the simulation evaluated.

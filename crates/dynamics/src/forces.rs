@@ -40,11 +40,10 @@ impl Forces<'_> {
         sum(self.constant, self.flows, state, &body, counters)
     }
 
-    /// Lets `seconds` pass.
-    pub fn pass(&mut self, seconds: f64) {
-        if let Some(decay) = self.decay {
-            self.body.spin = decay.after(&self.body.spin, seconds);
-        }
+    /// The same on a ball that rolls: its spin makes it 1 + alpha times as inert.
+    pub fn of_rolling(&self) -> Self {
+        let more = 1.0 + self.ball.inertia();
+        Self { constant: self.constant / more, body: Body { inertia: self.body.inertia * more, ..self.body }, ..*self }
     }
 }
 

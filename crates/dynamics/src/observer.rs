@@ -1,8 +1,10 @@
 //! What a simulation shows while it runs: events, and the stretches of motion between them.
 
 use crate::body::State;
+use crate::effects::spin_decay::SpinDecay;
 use crate::events::{Event, Motion};
 use crate::integrators::Step;
+use nalgebra::Vector3;
 
 /// A stretch of motion without an event inside.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,9 +19,38 @@ pub struct Segment {
     pub to: f64,
     /// How the ball moves in it.
     pub motion: Motion,
+    /// How it turns, if the scene calls for it.
+    pub turning: Option<Turning>,
+}
+
+/// The angular velocity during a stretch of motion: it decays, or changes evenly.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Turning {
+    /// At the start, in rad/s.
+    pub from: Vector3<f64>,
+    /// At the end, in rad/s, but for its decay.
+    pub to: Vector3<f64>,
+    /// How it decays, if it does.
+    pub decay: Option<SpinDecay>,
+}
+
+impl Turning {
+    /// The angular velocity in rad/s after `seconds` of the `whole` (s).
+    pub fn at(&self, seconds: f64, whole: f64) -> Vector3<f64> {
+        match self.decay {
+            Some(decay) => decay.after(&self.from, seconds),
+            None if self.from == self.to || whole <= 0.0 => self.to,
+            None => self.from + (self.to - self.from) * (seconds / whole).clamp(0.0, 1.0),
+        }
+    }
 }
 
 impl Segment {
+    /// The angular velocity in rad/s at `time`, if the scene calls for it.
+    pub fn spin_at(&self, time: f64) -> Option<Vector3<f64>> {
+        self.turning.map(|turning| turning.at(time - self.time, self.end - self.time))
+    }
+
     /// The state at `time`, which is brought into the segment.
     pub fn at(&self, time: f64) -> State {
         self.step.at(((time - self.time) / self.step.seconds).clamp(0.0, self.to))
@@ -106,6 +137,8 @@ pub struct Frame {
     pub state: State,
     /// How it moves.
     pub motion: Motion,
+    /// Its angular velocity in rad/s, if the scene calls for it.
+    pub spin: Option<Vector3<f64>>,
 }
 
 /// Samples the motion at t = k / fps. Frames are read off the stored paths and never change the run.
@@ -140,7 +173,8 @@ impl Observer for FrameSampler {
             if time > self.duration || (time >= end && !last) {
                 return;
             }
-            self.frames.push(Frame { time, state: segment.at(time), motion: segment.motion });
+            let (state, spin) = (segment.at(time), segment.spin_at(time));
+            self.frames.push(Frame { time, state, motion: segment.motion, spin });
         }
     }
 }

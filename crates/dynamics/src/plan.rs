@@ -8,6 +8,7 @@ use crate::effects::spin_decay::SpinDecay;
 use crate::error::{SceneError, ValueError, require};
 use crate::forces::Forces;
 use crate::integrators::adaptive::Adaptive;
+use crate::integrators::damped::Damped;
 use crate::integrators::{Integrator, Stepping};
 use crate::scene::{Method, Scene};
 use crate::surface::{Material, Shape};
@@ -20,6 +21,7 @@ use carom_geometry::mesh::Mesh;
 use carom_geometry::plane::Plane;
 use carom_geometry::rounding::{UNIT_ROUNDOFF, point_radius};
 use nalgebra::{Point3, Vector3};
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// A scene made ready: what is off is not in it.
@@ -32,9 +34,13 @@ pub struct Plan {
     flows: Vec<Arc<dyn Flow>>,
     spinning_flows: Vec<Arc<dyn Flow>>,
     spin_decay: Option<SpinDecay>,
+    /// Whether a surface turns the balls.
+    grips: bool,
     pub(crate) planes: Vec<(usize, Plane)>,
     pub(crate) meshes: Vec<(usize, Arc<Mesh>)>,
     pub(crate) surfaces: Vec<PlannedSurface>,
+    /// Whether a surface asks each ball for its restitution.
+    restitution_of_ball: bool,
     pub(crate) balls: Vec<Ball>,
     pub(crate) rest: RestThresholds,
     pub(crate) method: Method,
@@ -44,7 +50,7 @@ pub struct Plan {
 }
 
 /// What the loop needs to know of a surface whatever its shape.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct PlannedSurface {
     pub material: Material,
     /// Place in the order of the names: ties are broken by it, not by the order of the scene.
@@ -63,7 +69,11 @@ impl Plan {
         if scene.balls.is_empty() {
             return Err(SceneError::NoBalls);
         }
-        let spins = scene.balls.iter().any(|ball| ball.spin() != Vector3::zeros());
+        let grips = scene.grips();
+        if grips && let Some(ball) = scene.balls.iter().position(|ball| ball.radius() == 0.0) {
+            return Err(SceneError::RadiusMissing { ball, effect: "grip" });
+        }
+        let spins = scene.spins();
         let mut flows: Vec<Arc<dyn Flow>> = Vec::new();
         if let Some(drag) = scene.drag.filter(|drag| !drag.is_none()) {
             flows.push(Arc::new(drag));
@@ -78,6 +88,16 @@ impl Plan {
             && let Some(ball) = scene.balls.iter().position(|b| b.mass().is_none())
         {
             return Err(SceneError::MassMissing { ball, effect });
+        }
+        let drag_of_ball = scene.drag.is_some_and(|drag| drag.is_of_ball());
+        let restitution_of_ball = scene.surfaces.iter().any(|s| s.material.restitution.is_of_ball());
+        for (ball, b) in scene.balls.iter().enumerate() {
+            if drag_of_ball && b.drag().is_none() {
+                return Err(SceneError::OwnMissing { ball, what: "drag coefficient", effect: "the drag law" });
+            }
+            if restitution_of_ball && b.restitution().is_none() {
+                return Err(SceneError::OwnMissing { ball, what: "restitution", effect: "a material" });
+            }
         }
         let method = method(scene, &spinning_flows)?;
         let (planes, meshes) = shapes(scene);
@@ -106,15 +126,29 @@ impl Plan {
             flows,
             spinning_flows,
             spin_decay: scene.spin_decay.filter(|_| spins),
+            grips,
             planes,
             meshes,
             surfaces: surfaces.collect(),
+            restitution_of_ball,
             balls: scene.balls.clone(),
             rest: scene.rest.unwrap_or(RestThresholds::Length(default_rest_length(size.extent, size.farthest))),
             method,
             point_radius: point_radius(size.farthest),
             farthest: size.farthest,
         })
+    }
+
+    /// The same plan with a flow effect of your own, which acts on every ball in flight beside those of the scene.
+    ///
+    /// A plan that was exact is computed by the adaptive pair from here on: no closed form knows the effect.
+    pub fn with_flow(mut self, flow: Arc<dyn Flow>) -> Self {
+        self.flows.push(Arc::clone(&flow));
+        self.spinning_flows.push(flow);
+        if self.method == Method::Exact {
+            self.method = Method::Adaptive { tolerance: FLIGHT_TOLERANCE };
+        }
+        self
     }
 
     /// The balls, in the order of the scene.
@@ -166,27 +200,49 @@ impl Plan {
         Some(self.meshes.iter().fold(Aabb::empty(), |sum, (_, mesh)| sum.union(mesh.bounds())))
     }
 
+    /// Whether the spin of `ball` is followed: it has some, or a surface may give it some.
+    pub fn spins(&self, ball: &Ball) -> bool {
+        self.grips || ball.spin() != Vector3::zeros()
+    }
+
     pub(crate) fn forces<'a>(&'a self, ball: &'a Ball) -> Forces<'a> {
         // Without a mass nothing asks for it: the plan has seen to that.
         let mass = ball.mass().unwrap_or(f64::INFINITY);
         let inertia = self.buoyancy.map_or(mass, |buoyancy| buoyancy.inertia(ball, mass));
-        let spins = ball.spin() != Vector3::zeros();
+        let spins = self.spins(ball);
         Forces {
             constant: self.constant_acceleration(ball),
             flows: if spins { &self.spinning_flows } else { &self.flows },
             ball,
-            body: Body { radius: ball.radius(), inertia, spin: ball.spin() },
+            body: Body { radius: ball.radius(), inertia, drag: ball.drag().unwrap_or(0.0), spin: ball.spin() },
             decay: self.spin_decay.filter(|_| spins),
         }
     }
 
-    pub(crate) fn integrator(&self) -> Integrator {
+    /// The surfaces as `ball` meets them.
+    pub(crate) fn surfaces_for(&self, ball: &Ball) -> Cow<'_, [PlannedSurface]> {
+        if !self.restitution_of_ball {
+            return Cow::Borrowed(&self.surfaces);
+        }
+        let of_ball = |surface: &PlannedSurface| {
+            let restitution = surface.material.restitution.for_ball(ball);
+            PlannedSurface { material: Material { restitution, ..surface.material }, ..*surface }
+        };
+        self.surfaces.iter().map(of_ball).collect()
+    }
+
+    pub(crate) fn integrator(&self, forces: &Forces) -> Integrator {
         match self.method {
             Method::Exact => Integrator::Exact,
             Method::Euler { step } => Integrator::Stepping(Stepping::Euler, step),
             Method::SemiImplicitEuler { step } => Integrator::Stepping(Stepping::SemiImplicitEuler, step),
             Method::Rk4 { step } => Integrator::Stepping(Stepping::Rk4, step),
-            Method::Adaptive { tolerance } => Integrator::Adaptive(Adaptive::new(tolerance)),
+            Method::Adaptive { tolerance } => {
+                let rate = if let [flow] = forces.flows { flow.rate(&forces.body) } else { None };
+                rate.map_or(Integrator::Adaptive(Adaptive::new(tolerance)), |rate| {
+                    Integrator::Damped(Damped::new(tolerance, rate))
+                })
+            }
         }
     }
 }

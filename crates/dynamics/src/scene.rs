@@ -3,11 +3,13 @@
 use crate::body::Ball;
 use crate::effects::buoyancy::Buoyancy;
 use crate::effects::drag::Drag;
+use crate::effects::friction::Friction;
 use crate::effects::gravity::Gravity;
 use crate::effects::magnus::Magnus;
 use crate::effects::spin_decay::SpinDecay;
 use crate::surface::Surface;
 use crate::tolerance::RestThresholds;
+use nalgebra::Vector3;
 
 /// How flights are computed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -62,6 +64,16 @@ pub struct Scene {
 }
 
 impl Scene {
+    /// Whether balls turn in it: one spins at the start, or a surface makes them.
+    pub fn spins(&self) -> bool {
+        self.grips() || self.balls.iter().any(|ball| ball.spin() != Vector3::zeros())
+    }
+
+    /// Whether a surface turns the balls.
+    pub fn grips(&self) -> bool {
+        self.surfaces.iter().any(|s| matches!(s.material.friction, Friction::Grip(_)))
+    }
+
     /// An empty scene of `duration` seconds, to fill in: no gravity, no air, no surfaces, no
     /// balls.
     pub fn lasting(duration: f64) -> Self {

@@ -11,6 +11,7 @@
 mod flight;
 mod lasting;
 mod settling;
+mod spin;
 
 use crate::body::{Ball, State};
 use crate::clock::Clock;
@@ -22,23 +23,29 @@ use crate::forces::Forces;
 use crate::integrators::adaptive::Adaptive;
 use crate::integrators::{Integrator, Step};
 use crate::observer::{Observer, Segment};
-use crate::plan::Plan;
+use crate::plan::{Plan, PlannedSurface};
 use crate::tolerance::{
     EVENT_BUDGET, FARTHEST, MAX_STANDSTILL, ROLLING_TOLERANCE, SLIDING_TOLERANCE, STEP_BUDGET, time_resolution,
 };
 use nalgebra::Vector3;
+use spin::Slip;
 
 /// Simulates one ball of `plan` to the end and shows it to `observer`.
 pub fn simulate(plan: &Plan, ball: &Ball, observer: &mut impl Observer) -> Outcome {
     let forces = plan.forces(ball);
+    let surfaces = plan.surfaces_for(ball);
     let mut counters = Counters::default();
     let start = ball.start();
     let a = forces.acceleration(&start, &mut counters);
     let mut walk = Walk {
         plan,
+        surfaces: &surfaces,
+        spins: plan.spins(ball),
+        rolls: false,
+        slip: None,
         forces,
         obstacles: Obstacles::new(plan, ball.radius(), &start, &a),
-        integrator: plan.integrator(),
+        integrator: plan.integrator(&forces),
         state: start,
         clock: Clock::start(),
         contacts: Contacts::new(),
@@ -61,7 +68,7 @@ pub fn simulate(plan: &Plan, ball: &Ball, observer: &mut impl Observer) -> Outco
     while walk.ending.is_none() && walk.clock.until(plan.duration) > 0.0 {
         match walk.motion {
             Motion::Flying => walk.fly(),
-            Motion::Sliding => walk.slide(),
+            Motion::Sliding | Motion::Rolling => walk.slide(),
             Motion::Resting => walk.rest(),
         }
         if walk.counters.paths >= STEP_BUDGET && walk.ending.is_none() {
@@ -72,7 +79,8 @@ pub fn simulate(plan: &Plan, ball: &Ball, observer: &mut impl Observer) -> Outco
         ending: walk.ending.unwrap_or(Ending::Completed),
         time: walk.clock.now(),
         state: walk.state,
-        motion: walk.motion,
+        spin: walk.spins.then_some(walk.forces.body.spin),
+        motion: if walk.rolls && walk.motion == Motion::Sliding { Motion::Rolling } else { walk.motion },
         counters: walk.counters,
     }
 }
@@ -91,6 +99,14 @@ struct Settling {
 /// One ball on its way.
 struct Walk<'a, O> {
     plan: &'a Plan,
+    /// What it can meet, as it meets them.
+    surfaces: &'a [PlannedSurface],
+    /// Whether its spin is followed.
+    spins: bool,
+    /// Whether it rolls where it moves along a surface.
+    rolls: bool,
+    /// How it slips in this stretch, if it spins.
+    slip: Option<Slip>,
     forces: Forces<'a>,
     obstacles: Obstacles<'a>,
     integrator: Integrator,
@@ -127,6 +143,7 @@ impl<O: Observer> Walk<'_, O> {
         let duration = self.plan.duration;
         let Some(h) = self.integrator.timestep() else { return duration };
         let mut n = (self.clock.now() / h).floor();
+        // Twice at most: the plan refuses more steps than f64 can count one by one.
         while n * h <= self.clock.now() {
             n += 1.0;
         }
@@ -142,11 +159,15 @@ impl<O: Observer> Walk<'_, O> {
             None => self.clock.advance(step.time(to)),
         }
         let end = self.clock.now();
+        let turning = self.spins.then(|| self.turning(step, to, motion, self.slip.as_ref()));
         if to > 0.0 {
-            self.observer.segment(&Segment { time, end, step: *step, to, motion });
+            self.observer.segment(&Segment { time, end, step: *step, to, motion, turning });
         }
         self.state = step.at(to);
-        self.forces.pass(step.time(to));
+        if let Some(turning) = turning {
+            let seconds = step.time(to);
+            self.forces.body.spin = turning.at(seconds, seconds);
+        }
         if end - self.moved > time_resolution(end) {
             self.standstill = 0;
             self.moved = end;
@@ -186,7 +207,7 @@ impl<O: Observer> Walk<'_, O> {
     }
 
     fn tell(&mut self, kind: EventKind, contact: &Contact, velocity_in: Vector3<f64>) {
-        let numbered = self.plan.surfaces[contact.surface].numbered;
+        let numbered = self.surfaces[contact.surface].numbered;
         self.events += 1;
         self.observer.event(&Event {
             time: self.clock.now(),
@@ -198,6 +219,7 @@ impl<O: Observer> Walk<'_, O> {
             velocity_in,
             velocity: self.state.velocity,
             bound: self.bound,
+            spin: self.spins.then_some(self.forces.body.spin),
         });
         if self.events == EVENT_BUDGET {
             self.give_up(Ending::EventBudget, EventKind::EventBudget);

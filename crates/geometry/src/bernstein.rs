@@ -167,3 +167,48 @@ pub(crate) fn first_entry(coefficients: &[f64; DEGREE + 1], from: f64, to: f64) 
     }
     None
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_root_of_a_falling_piece_is_on_its_early_side() {
+        for c in [[0.3, -1.1, 0.7, -0.45, -0.9], [0.1, 0.0, 0.0, -0.7, -0.3], [1.0, -0.3, -0.7, -0.2, -0.1]] {
+            let piece = Piece::of(&c, 0.0, 1.0);
+            assert!(matches!(piece.verdict(), Verdict::OneRoot), "{c:?}");
+            let root = piece.only_root();
+            assert!(piece.at(root) >= 0.0 && piece.at(root.next_up().next_up()) < 0.0, "{root} of {c:?}");
+        }
+    }
+
+    #[test]
+    fn an_entry_at_either_end_of_the_search_is_found() {
+        assert_eq!(first_entry(&[1.0, 0.0, 0.0, -1.0, 0.0], 0.0, 1.0), Some(1.0));
+        let falling = [0.3, -1.1, 0.7, 0.45, -0.9];
+        assert_eq!(first_entry(&falling, 0.5, 0.5), Some(0.5), "below 0 and falling: now");
+    }
+
+    #[test]
+    fn what_starts_level_below_zero_and_rises_enters_where_it_falls_back() {
+        let c = [-0.1, 0.0, 0.0, 4.0, -4.5];
+        let f = first_entry(&c, 0.0, 1.0).unwrap();
+        let at = |f: f64| c.iter().rev().fold(0.0, |sum, c| sum * f + c);
+        assert!(f > 0.5 && at(f).abs() < 1e-14, "{f}");
+    }
+
+    #[test]
+    fn the_first_of_three_roots_is_found_where_a_secant_would_find_the_last() {
+        // (f - 0.1)(f - 0.2)(f - 0.9)(f - 1.5)
+        let f = first_entry(&[0.027, -0.453, 2.09, -2.7, 1.0], 0.0, 1.0).unwrap();
+        assert!((f - 0.1).abs() < 1e-14, "{f}");
+    }
+
+    #[test]
+    fn an_entry_far_below_the_resolution_of_the_whole_is_told_from_the_start() {
+        // -(f - 2^-42)(f - 2^-40): begins below 0 and rises.
+        let (early, late) = (2f64.powi(-42), 2f64.powi(-40));
+        let f = first_entry(&[-early * late, early + late, -1.0, 2f64.powi(-60), 0.0], 0.0, 1.0).unwrap();
+        assert!((f / late - 1.0).abs() < 1e-9, "{f:e}");
+    }
+}

@@ -86,6 +86,12 @@ impl Aabb {
         enter <= leave && !self.is_empty()
     }
 
+    /// Whether the box is certain to have no point within `radius` of the segment from `a` to `b`, but for the rounding of a sum.
+    #[inline]
+    pub(crate) fn is_off(&self, a: &Point3<f64>, b: &Point3<f64>, radius: f64) -> bool {
+        (0..3).any(|i| least(a[i], b[i]) - radius > self.max[i] || largest(a[i], b[i]) + radius < self.min[i])
+    }
+
     /// The lengths of the sides; zero for an empty box, infinite where f64 has no such length.
     pub fn extent(&self) -> Vector3<f64> {
         if self.is_empty() { Vector3::zeros() } else { self.max - self.min }
@@ -95,6 +101,24 @@ impl Aabb {
     pub fn centre(&self) -> Point3<f64> {
         if self.is_empty() { Point3::origin() } else { self.min.map(|c| c / 2.0) + self.max.coords / 2.0 }
     }
+}
+
+/// The smaller of two numbers, neither of them NaN: one instruction, where `f64::min` takes five.
+#[inline]
+pub(crate) fn least(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
+}
+
+/// The larger of two numbers, neither of them NaN.
+#[inline]
+pub(crate) fn largest(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// The largest |component| of a vector of numbers.
+#[inline]
+pub(crate) fn amax(v: &Vector3<f64>) -> f64 {
+    largest(largest(v.x.abs(), v.y.abs()), v.z.abs())
 }
 
 #[cfg(test)]
@@ -148,6 +172,7 @@ mod tests {
         let from = Point3::new(-1.0, -1.0, -1.0);
         assert!(unit().is_ahead(&from, &Vector3::new(1.0, 1.0, 1.0)) && !unit().is_ahead(&from, &-Vector3::x()));
         assert!(!unit().is_ahead(&from, &Vector3::new(1.0, 3.0, 1.0)) && !unit().is_ahead(&from, &Vector3::zeros()));
+        assert!(unit().is_ahead(&Point3::new(-1.0, -4.0, -1.0), &Vector3::new(1.0, 3.0, 1.0)));
         assert!(unit().is_ahead(&unit().centre(), &Vector3::zeros()));
         assert!(!Aabb::empty().is_ahead(&from, &Vector3::new(1.0, 1.0, 1.0)));
     }

@@ -56,11 +56,13 @@ impl Clearance {
     }
 
     /// c(f).
+    #[inline]
     pub fn at(&self, f: f64) -> f64 {
         self.c.iter().rev().fold(0.0, |sum, c| sum * f + c)
     }
 
     /// dc/df at `f`.
+    #[inline]
     pub fn rate(&self, f: f64) -> f64 {
         let [_, c1, c2, c3, c4] = self.c;
         ((4.0 * c4 * f + 3.0 * c3) * f + 2.0 * c2) * f + c1
@@ -77,6 +79,7 @@ impl Clearance {
     /// Lines and parabolas are solved in closed form, to a few units of roundoff; higher degrees to the last bit of f that
     /// the rounded coefficients determine, on the early side. A parabola that touches 0 from above without crossing is
     /// reported as a touch (`rate` 0).
+    #[inline]
     pub fn first_entry(&self, from: f64, to: f64) -> Entry {
         if from > to {
             return Entry::Never;
@@ -278,5 +281,31 @@ mod tests {
                 (x, y) => assert_eq!(x, y),
             }
         }
+    }
+
+    #[test]
+    fn value_rate_and_curvature_are_those_of_the_polynomial() {
+        // 1 + 2 f + 3 f^2 + 4 f^3 + 5 f^4 at 2.
+        let c = Clearance::new([1.0, 2.0, 3.0, 4.0, 5.0]);
+        assert_eq!((c.at(2.0), c.rate(2.0), c.curvature(2.0)), (129.0, 222.0, 294.0));
+    }
+
+    #[test]
+    fn what_overlaps_and_separates_enters_where_it_comes_back() {
+        // -(4 f - 1)(f - 1): free from 1/4 on; and -4 f^2 + 2 f - 1, which turns at 1/4 before it is free.
+        assert_eq!(entry([-1.0, 5.0, -4.0, 0.0, 0.0], 0.0, 1.0), Some((1.0, -3.0)));
+        assert_eq!(entry([-1.0, 2.0, -4.0, 0.0, 0.0], 0.0, 1.0), Some((0.25, 0.0)));
+        assert_eq!(entry([-1.0, -2.0, 0.0, 0.0, 0.0], 0.5, 0.5), Some((0.5, -2.0)), "an interval of one f");
+        assert_eq!(entry([1.0, -2.0, 0.0, 0.0, 0.0], 0.0, 0.25), None, "later than asked");
+    }
+
+    #[test]
+    fn a_discriminant_loses_neither_digits_nor_its_range() {
+        let s = |k| 2f64.powi(k);
+        // The roots 1 and 1 + 2^-29: b^2 needs 60 bits. And a c = 1 - 2^-60.
+        assert_eq!(entry([1.0 + s(-29), -2.0 - s(-29), 1.0, 0.0, 0.0], 0.0, 1.0), Some((1.0, -s(-29))));
+        let (_, rate) = entry([1.0 - s(-30), -2.0, 1.0 + s(-30), 0.0, 0.0], 0.0, 1.0).unwrap();
+        assert_eq!(rate, -s(-29));
+        assert_eq!(entry([1.0, -s(600), 1.0, 0.0, 0.0], 0.0, 1.0), Some((s(-600), -s(600))));
     }
 }

@@ -1,7 +1,8 @@
 //! The point of a triangle closest to a given one, for triangles of any shape and size.
 
+use crate::bounds::amax;
 use crate::normal::cross_compensated;
-use crate::rounding::{NEEDLE_SINE_SQUARED, exponent, scale};
+use crate::rounding::{LEAST_SINE_SQUARED, NEEDLE_SINE_SQUARED, exponent, scale};
 use nalgebra::{Point3, Vector3};
 
 /// Which part of a triangle.
@@ -34,9 +35,9 @@ pub struct Closest {
 /// Collision Detection (2005), section 5.1.5, from the vertex opposite to the longest edge.
 pub fn closest_point(triangle: &[Point3<f64>; 3], x: &Point3<f64>) -> Closest {
     match to_unit_scale(triangle, x) {
-        None => closest_in_range(triangle, x),
+        None => Frame::new(triangle).closest(x),
         Some((triangle_scaled, x_scaled, k)) => {
-            let closest = closest_in_range(&triangle_scaled, &x_scaled);
+            let closest = Frame::new(&triangle_scaled).closest(&x_scaled);
             let offset = closest.offset.map(|c| scale(c, k));
             let point = match closest.feature {
                 Feature::Vertex(i) => triangle[usize::from(i)],
@@ -50,14 +51,53 @@ pub fn closest_point(triangle: &[Point3<f64>; 3], x: &Point3<f64>) -> Closest {
 /// Exponents of coordinate differences for which products of four neither overflow nor lose what matters.
 const DIRECT_RANGE: std::ops::Range<i32> = -200..250;
 
+/// A triangle that is asked for more than one closest point: what depends on it alone is computed once.
+pub(crate) struct Asked {
+    triangle: [Point3<f64>; 3],
+    /// Of the triangle, or of one of size 1 if that is not in [`DIRECT_RANGE`].
+    frame: Frame,
+    size: f64,
+    in_range: bool,
+}
+
+impl Asked {
+    pub(crate) fn new(triangle: &[Point3<f64>; 3]) -> Self {
+        let [a, b, c] = triangle;
+        let size = amax(&(b - a)).max(amax(&(c - a)));
+        let k = exponent(size);
+        if DIRECT_RANGE.contains(&k) || size == 0.0 {
+            return Self { triangle: *triangle, frame: Frame::new(triangle), size, in_range: size > 0.0 };
+        }
+        let frame = Frame::new(&triangle.map(|p| p.map(|c| scale(c, -k))));
+        Self { triangle: *triangle, frame, size: scale(size, -k), in_range: false }
+    }
+
+    /// What [`closest_point`] says, bit for bit.
+    pub(crate) fn closest(&self, x: &Point3<f64>) -> Closest {
+        let direct = || exponent(self.size.max(amax(&(x - self.triangle[0])))) < DIRECT_RANGE.end;
+        if self.in_range && direct() { self.frame.closest(x) } else { closest_point(&self.triangle, x) }
+    }
+
+    /// The triangle.
+    pub(crate) fn corners(&self) -> &[Point3<f64>; 3] {
+        &self.triangle
+    }
+
+    /// The unit normal, to a few roundings and on either side; none without an area that f64 can tell.
+    pub(crate) fn normal(&self) -> Option<Vector3<f64>> {
+        let (square, side) = (self.frame.normal.norm_squared(), self.size * self.size);
+        (square > side * LEAST_SINE_SQUARED * side).then(|| self.frame.normal / square.sqrt())
+    }
+}
+
 /// The triangle and the point scaled by 2^-k to a size of about 1; none if there is no need.
 pub(crate) fn to_unit_scale(
     triangle: &[Point3<f64>; 3],
     x: &Point3<f64>,
 ) -> Option<([Point3<f64>; 3], Point3<f64>, i32)> {
     let origin = triangle[0];
-    let edges = (triangle[1] - origin).amax().max((triangle[2] - origin).amax());
-    let most = edges.max((x - origin).amax());
+    let edges = amax(&(triangle[1] - origin)).max(amax(&(triangle[2] - origin)));
+    let most = edges.max(amax(&(x - origin)));
     if DIRECT_RANGE.contains(&exponent(most)) && (DIRECT_RANGE.contains(&exponent(edges)) || edges == 0.0)
         || most == 0.0
     {
@@ -110,69 +150,69 @@ impl Frame {
     fn edge(&self, i: u8) -> Feature {
         Feature::Edge((self.first + i) % 3)
     }
-}
 
-fn closest_in_range(triangle: &[Point3<f64>; 3], x: &Point3<f64>) -> Closest {
-    let frame = Frame::new(triangle);
-    let ([a, b, c], ab, ac) = (frame.vertices, frame.ab, frame.ac);
-    let at = |point: Point3<f64>, offset, feature| Closest { point, offset, feature };
+    /// The closest point, of a triangle and a point in [`DIRECT_RANGE`].
+    fn closest(&self, x: &Point3<f64>) -> Closest {
+        let ([a, b, c], ab, ac) = (self.vertices, self.ab, self.ac);
+        let at = |point: Point3<f64>, offset, feature| Closest { point, offset, feature };
 
-    let ap = x - a;
-    let (d1, d2) = (ab.dot(&ap), ac.dot(&ap));
-    if d1 <= 0.0 && d2 <= 0.0 {
-        return at(a, ap, frame.vertex(0));
-    }
-    let bp = x - b;
-    let (d3, d4) = (ab.dot(&bp), ac.dot(&bp));
-    if d3 >= 0.0 && d4 <= d3 {
-        return at(b, bp, frame.vertex(1));
-    }
-    let cp = x - c;
-    let (d5, d6) = (ab.dot(&cp), ac.dot(&cp));
-    if d6 >= 0.0 && d5 <= d6 {
-        return at(c, cp, frame.vertex(2));
-    }
-    // Triple products, not the differences of products d1 d4 - d3 d2 ... that they equal: those lose the height of a needle.
-    let n = frame.normal;
-    let inside = |p: &Vector3<f64>, q: &Vector3<f64>| n.dot(&p.cross(q));
-    // From the end with the lower coordinates and without the third vertex: the same bits from each face that has the edge.
-    let along = |p: &Point3<f64>, q: &Point3<f64>, feature| {
-        let (from, to) = if p.coords.as_slice() <= q.coords.as_slice() { (p, q) } else { (q, p) };
-        let (edge, offset) = (to - from, x - from);
-        let length = edge.norm_squared();
-        if length == 0.0 {
-            return at(*from, offset, feature);
+        let ap = x - a;
+        let (d1, d2) = (ab.dot(&ap), ac.dot(&ap));
+        if d1 <= 0.0 && d2 <= 0.0 {
+            return at(a, ap, self.vertex(0));
         }
-        let part = edge.dot(&offset) / length;
-        let offset = offset - edge * part;
-        // Once more, for what rounding left along the edge.
-        let rest = edge.dot(&offset) / length;
-        at(from + edge * (part + rest), offset - edge * rest, feature)
-    };
-    let (vc, vb, va) = (inside(&ab, &ap), inside(&ap, &ac), inside(&bp, &cp));
-    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 && d1 > d3 {
-        return along(&a, &b, frame.edge(0));
-    }
-    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 && d2 > d6 {
-        return along(&a, &c, frame.edge(2));
-    }
-    let (beyond_b, beyond_c) = (d4 - d3, d5 - d6);
-    if va <= 0.0 && beyond_b >= 0.0 && beyond_c >= 0.0 && beyond_b + beyond_c > 0.0 {
-        return along(&b, &c, frame.edge(1));
-    }
-    let area_squared = n.norm_squared();
-    if area_squared > 0.0 {
-        let offset = n * (n.dot(&ap) / area_squared);
-        return at(x - offset, offset, Feature::Face);
-    }
-    // No area, and rounding put x past every segment: the nearest vertex.
-    let nearer = |p: &Vector3<f64>, q: &Vector3<f64>| p.norm_squared() <= q.norm_squared();
-    if nearer(&ap, &bp) && nearer(&ap, &cp) {
-        at(a, ap, frame.vertex(0))
-    } else if nearer(&bp, &cp) {
-        at(b, bp, frame.vertex(1))
-    } else {
-        at(c, cp, frame.vertex(2))
+        let bp = x - b;
+        let (d3, d4) = (ab.dot(&bp), ac.dot(&bp));
+        if d3 >= 0.0 && d4 <= d3 {
+            return at(b, bp, self.vertex(1));
+        }
+        let cp = x - c;
+        let (d5, d6) = (ab.dot(&cp), ac.dot(&cp));
+        if d6 >= 0.0 && d5 <= d6 {
+            return at(c, cp, self.vertex(2));
+        }
+        // Triple products, not the differences of products d1 d4 - d3 d2 ... that they equal: those lose the height of a needle.
+        let n = self.normal;
+        let inside = |p: &Vector3<f64>, q: &Vector3<f64>| n.dot(&p.cross(q));
+        // From the end with the lower coordinates and without the third vertex: the same bits from each face that has the edge.
+        let along = |p: &Point3<f64>, q: &Point3<f64>, feature| {
+            let (from, to) = if p.coords.as_slice() <= q.coords.as_slice() { (p, q) } else { (q, p) };
+            let (edge, offset) = (to - from, x - from);
+            let length = edge.norm_squared();
+            if length == 0.0 {
+                return at(*from, offset, feature);
+            }
+            let part = edge.dot(&offset) / length;
+            let offset = offset - edge * part;
+            // Once more, for what rounding left along the edge.
+            let rest = edge.dot(&offset) / length;
+            at(from + edge * (part + rest), offset - edge * rest, feature)
+        };
+        let (vc, vb, va) = (inside(&ab, &ap), inside(&ap, &ac), inside(&bp, &cp));
+        if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 && d1 > d3 {
+            return along(&a, &b, self.edge(0));
+        }
+        if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 && d2 > d6 {
+            return along(&a, &c, self.edge(2));
+        }
+        let (beyond_b, beyond_c) = (d4 - d3, d5 - d6);
+        if va <= 0.0 && beyond_b >= 0.0 && beyond_c >= 0.0 && beyond_b + beyond_c > 0.0 {
+            return along(&b, &c, self.edge(1));
+        }
+        let area_squared = n.norm_squared();
+        if area_squared > 0.0 {
+            let offset = n * (n.dot(&ap) / area_squared);
+            return at(x - offset, offset, Feature::Face);
+        }
+        // No area, and rounding put x past every segment: the nearest vertex.
+        let nearer = |p: &Vector3<f64>, q: &Vector3<f64>| p.norm_squared() <= q.norm_squared();
+        if nearer(&ap, &bp) && nearer(&ap, &cp) {
+            at(a, ap, self.vertex(0))
+        } else if nearer(&bp, &cp) {
+            at(b, bp, self.vertex(1))
+        } else {
+            at(c, cp, self.vertex(2))
+        }
     }
 }
 
@@ -303,6 +343,21 @@ mod tests {
         }
         println!("needles: distance off by {} u, point by {} u at worst", worst.0, worst.1);
         assert!(worst.0 <= CLOSEST_BOUND && worst.1 <= CLOSEST_BOUND, "{worst:?}");
+    }
+
+    #[test]
+    fn closest_point_of_a_triangle_like_a_point_from_afar_still_names_the_face() {
+        let t = [(0.0, 0.0), (4.0, 0.0), (0.0, 4.0)].map(|(x, y)| Point3::new(scale(x, -400), scale(y, -400), 0.0));
+        let over = Point3::new(scale(1.0, -400), scale(1.0, -400), 1.0);
+        let closest = closest_point(&t, &over);
+        assert_eq!((closest.feature, closest.offset), (Feature::Face, Vector3::z()));
+    }
+
+    #[test]
+    fn closest_vertex_is_the_vertex_bit_for_bit() {
+        let least = f64::from_bits(1);
+        let t = [(0.0, least), (1e300, 0.0), (0.0, 1e300)].map(|(x, y)| Point3::new(x, y, least));
+        assert_eq!(closest_point(&t, &Point3::new(-1e300, -1e300, 0.0)).point, t[0]);
     }
 
     /// "A few u": what the tests hold `closest_point` to.

@@ -6,8 +6,9 @@
 //! was, so the answer is never late; doubt within the rounding bound is a hit. (Conservative advancement: Mirtich 1996; the
 //! support plane makes it exact for a face and quadratically convergent for edges and vertices.)
 
+use crate::bounds::{amax, largest};
 use crate::clearance::Entry;
-use crate::closest::{Feature, closest_point};
+use crate::closest::{Asked, Feature};
 use crate::path::Path;
 use crate::rounding::{UNIT_ROUNDOFF, contact_bound, hold_bound};
 use nalgebra::{Point3, Vector3};
@@ -26,14 +27,17 @@ pub struct Hold {
     pub slack: f64,
     /// The f at which the path returns to the plane, infinite if never.
     pub until: f64,
+    /// A face of a mesh to which it returns, if it goes nowhere in between: the first to be asked. It changes no answer.
+    pub face: Option<u32>,
 }
 
 impl Hold {
     /// Whether the triangle is behind the plane, as far as that can be told.
+    #[inline]
     fn hides(&self, triangle: &[Point3<f64>; 3]) -> bool {
         triangle.iter().all(|v| {
             let d = v - self.point;
-            self.normal.dot(&d) <= self.slack + hold_bound(d.amax())
+            self.normal.dot(&d) <= self.slack + hold_bound(amax(&d))
         })
     }
 }
@@ -47,6 +51,35 @@ pub struct MovingBall<'a> {
     pub radius: f64,
     /// Planes that it touches at the start.
     pub holds: &'a [Hold],
+}
+
+impl MovingBall<'_> {
+    /// The triangle relative to the start of the path: what is far from the origin costs no digits.
+    #[inline]
+    pub(crate) fn asked(&self, triangle: &[Point3<f64>; 3]) -> Asked {
+        let start = self.path.start();
+        Asked::new(&triangle.map(|v| Point3::from(v - start)))
+    }
+
+    /// Whether the plane that faces the ball at `to` is enough to certify that it stays farther than `reach` off a triangle in
+    /// [`from`, `to`]: so it is for most triangles around one that is hit at `to`.
+    pub(crate) fn stays_off(&self, asked: &Asked, from: f64, to: f64, reach: f64) -> bool {
+        let Support { normal, gap, .. } = Support::at(self, asked, to);
+        let clearance = self.path.clearance(gap + self.radius - reach, &normal);
+        clearance.at(from) > 0.0 && clearance.at(to) > 0.0 && clearance.first_entry(from, to) == Entry::Never
+    }
+
+    /// The f, at least `from`, before which the holds keep the ball off `triangle`.
+    #[inline]
+    pub(crate) fn held_off(&self, triangle: &[Point3<f64>; 3], from: f64) -> f64 {
+        let mut f = from;
+        for hold in self.holds {
+            if hold.until > f && hold.hides(triangle) {
+                f = hold.until;
+            }
+        }
+        f
+    }
 }
 
 /// How the search for a contact ended.
@@ -69,32 +102,42 @@ const MAX_ROUNDS: u32 = 256;
 
 /// The first f in [`from`, `to`] at which the ball touches `triangle` and closes in; `rounds` counts support planes.
 pub fn first_contact(ball: &MovingBall, triangle: &[Point3<f64>; 3], from: f64, to: f64, rounds: &mut u64) -> Contact {
-    match contact_from(ball, triangle, from, to, rounds) {
+    match contact_from(ball, &ball.asked(triangle), ball.held_off(triangle, from), to, rounds) {
         Contact::At { f, feature } => Contact::At { f: f.min(to), feature },
         Contact::Miss => Contact::Miss,
     }
 }
 
-/// [`first_contact`], but what is found has the same bits for every `to` <= 1, so that it may lie beyond `to` by rounding.
-pub(crate) fn contact_from(
-    ball: &MovingBall,
-    triangle: &[Point3<f64>; 3],
-    from: f64,
-    to: f64,
-    rounds: &mut u64,
-) -> Contact {
-    let path = ball.path;
-    // Everything relative to the start: what is far from the origin costs no digits.
-    let corners = triangle.map(|v| Point3::from(v - path.start()));
-    let size = corners.iter().map(|a| a.coords.amax()).fold(ball.radius, f64::max);
+/// [`first_contact`], but `from` is where the holds let go, and what is found has the same bits for every `to` <= 1, so that it may lie beyond `to` by rounding.
+pub(crate) fn contact_from(ball: &MovingBall, asked: &Asked, from: f64, to: f64, rounds: &mut u64) -> Contact {
+    if from > to {
+        return Contact::Miss;
+    }
+    let (path, mut f) = (ball.path, from);
+    let size = asked.corners().iter().map(|a| amax(&a.coords)).fold(ball.radius, largest);
     let bound_at = |f: f64| contact_bound(size + path.reach(f));
     // Planes are met on the whole path: a contact at `to` is decided as one before it.
     let end = to.max(1.0);
+    // Never late: a plane is moved towards the ball by the bound that holds where the path meets it.
+    let meets = |gap: f64, normal: &Vector3<f64>, f: f64| {
+        let bound = 2.0 * bound_at(f);
+        let entry = path.clearance(gap - bound, normal).first_entry(f, end);
+        match entry {
+            Entry::At { f: next, .. } if bound_at(next) > bound => {
+                let bound = bound_at(next);
+                (path.clearance(gap - bound, normal).first_entry(f, end), bound)
+            }
+            _ => (entry, bound),
+        }
+    };
 
-    let mut f = from;
-    for hold in ball.holds {
-        if hold.until > f && hold.hides(triangle) {
-            f = hold.until;
+    if let Some((gap, normal)) =
+        face_plane(asked, ball, f).filter(|(gap, n)| path.clearance(*gap, n).at(f) > 2.0 * bound_at(f))
+    {
+        *rounds += 1;
+        match meets(gap, &normal, f).0 {
+            Entry::Never => return Contact::Miss,
+            Entry::At { f: next, .. } => f = next,
         }
     }
     for _ in 0..MAX_ROUNDS {
@@ -102,30 +145,34 @@ pub(crate) fn contact_from(
             return Contact::Miss;
         }
         *rounds += 1;
-        let Support { normal, gap, feature } = Support::at(ball, &corners, f);
-        // Never late: the plane is moved towards the ball by the bound that holds where the path meets it.
-        let mut bound = 2.0 * bound_at(f);
-        let mut entry = path.clearance(gap - bound, &normal).first_entry(f, end);
-        if let Entry::At { f: next, .. } = entry
-            && bound_at(next) > bound
-        {
-            bound = bound_at(next);
-            entry = path.clearance(gap - bound, &normal).first_entry(f, end);
+        let support = Support::at(ball, asked, f);
+        let plane = path.clearance(support.gap, &support.normal);
+        let (height, falling) = (plane.at(f), plane.rate(f) < 0.0);
+        if height <= 2.0 * bound_at(f) && falling {
+            return Contact::At { feature: support.feature, f: polish(ball, asked, support, f, end, rounds) };
         }
+        let (entry, bound) = meets(support.gap, &support.normal, f);
         let Entry::At { f: next, .. } = entry else {
             return Contact::Miss;
         };
-        let plane = path.clearance(gap, &normal);
-        let touching = plane.at(f) <= 2.0 * bound && plane.rate(f) < 0.0;
-        if touching || next - f <= 2.0 * UNIT_ROUNDOFF * f {
-            return Contact::At { f: polish(ball, &corners, f, end, rounds), feature };
+        if (height <= 2.0 * bound && falling) || next - f <= 2.0 * UNIT_ROUNDOFF * f {
+            return Contact::At { feature: support.feature, f: polish(ball, asked, support, f, end, rounds) };
         }
         f = next;
     }
     if f > to {
         return Contact::Miss;
     }
-    Contact::At { f, feature: Support::at(ball, &corners, f).feature }
+    Contact::At { f, feature: Support::at(ball, asked, f).feature }
+}
+
+/// The distance between the ball at the start and the plane of the triangle, seen from the side the ball is on at `f`, and the normal
+/// to there. While the ball has not met it, it is as good a certificate as any, and for a contact with the face the only one needed.
+fn face_plane(asked: &Asked, ball: &MovingBall, f: f64) -> Option<(f64, Vector3<f64>)> {
+    let n = asked.normal()?;
+    let from_corner = ball.path.displacement(f) - asked.corners()[0].coords;
+    let n = if n.dot(&from_corner) < 0.0 { -n } else { n };
+    Some((-farthest_along(asked.corners(), &n) - ball.radius, n))
 }
 
 /// A support plane of a triangle, from the start of the path.
@@ -140,8 +187,9 @@ struct Support {
 
 impl Support {
     /// The plane that faces the ball at `f`.
-    fn at(ball: &MovingBall, corners: &[Point3<f64>; 3], f: f64) -> Self {
-        let closest = closest_point(corners, &Point3::from(ball.path.displacement(f)));
+    fn at(ball: &MovingBall, asked: &Asked, f: f64) -> Self {
+        let closest = asked.closest(&Point3::from(ball.path.displacement(f)));
+        let corners = asked.corners();
         let (away, distance) = (closest.offset, closest.offset.norm());
         let normal = if distance > 0.0 { away / distance } else { escape_direction(corners, ball.path, f) };
         let gap = -farthest_along(corners, &normal) - ball.radius;
@@ -152,7 +200,7 @@ impl Support {
 /// How far the triangle reaches along `normal`, from the start of the path.
 fn farthest_along(corners: &[Point3<f64>; 3], normal: &Vector3<f64>) -> f64 {
     let [a, b, c] = corners.map(|p| normal.dot(&p.coords));
-    a.max(b).max(c)
+    largest(largest(a, b), c)
 }
 
 /// Support planes looked at to polish a contact: from within its bound, a graze comes nearer by a factor of 4 with each.
@@ -161,17 +209,19 @@ const MAX_POLISH: u32 = 8;
 /// From `f`, where the ball touches to within the bound, to where it touches: support planes again, now where they are. The triangle
 /// is behind them all the same, so this ends at the contact to the rounding of the planes: on a face at once, at an edge or a vertex in
 /// a step or two of Newton's method.
-fn polish(ball: &MovingBall, corners: &[Point3<f64>; 3], f: f64, to: f64, rounds: &mut u64) -> f64 {
-    let mut f = f;
+fn polish(ball: &MovingBall, asked: &Asked, support: Support, f: f64, to: f64, rounds: &mut u64) -> f64 {
+    let (mut f, mut support) = (f, support);
     for _ in 0..MAX_POLISH {
-        let Support { normal, gap, feature } = Support::at(ball, corners, f);
-        *rounds += 1;
-        let Entry::At { f: next, .. } = ball.path.clearance(gap, &normal).first_entry(f, to) else { break };
-        let arrived = next - f <= 2.0 * UNIT_ROUNDOFF * f || feature == Feature::Face;
+        let Entry::At { f: next, .. } = ball.path.clearance(support.gap, &support.normal).first_entry(f, to) else {
+            break;
+        };
+        let arrived = next - f <= 2.0 * UNIT_ROUNDOFF * f || support.feature == Feature::Face;
         f = next;
         if arrived {
             break;
         }
+        *rounds += 1;
+        support = Support::at(ball, asked, f);
     }
     f
 }
@@ -188,3 +238,6 @@ fn escape_direction(corners: &[Point3<f64>; 3], path: &Path, f: f64) -> Vector3<
         None => Vector3::x(),
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -5,6 +5,7 @@ mod topology;
 mod weld;
 
 use nalgebra::{Point3, UnitVector3, Vector3};
+use rayon::prelude::*;
 use std::collections::BTreeSet;
 use thiserror::Error;
 
@@ -134,7 +135,7 @@ impl Mesh {
     pub fn new(vertices: Vec<Point3<f64>>, faces: Vec<[u32; 3]>) -> Result<Self, MeshError> {
         refuse_errors(&vertices, &faces)?;
         let normal = |f: &[u32; 3]| unit_normal(&corners(&vertices, f)).map_or_else(Vector3::zeros, |n| n.into_inner());
-        let mut normals: Vec<_> = faces.iter().map(normal).collect();
+        let mut normals: Vec<_> = faces.par_iter().map(normal).collect();
         let (mut topology, repeats) = topology_without_repeats(vertices.len(), &faces);
         folds(&mut topology, &vertices, &faces, &normals);
         share_normals(&topology, &mut normals);
@@ -204,6 +205,15 @@ impl Mesh {
                 let n = all[face as usize];
                 (n != Vector3::zeros()).then(|| UnitVector3::new_unchecked(n))
             }
+        }
+    }
+
+    /// [`normal`](Self::normal) without its promise of unit length.
+    #[inline]
+    pub(crate) fn plain_normal(&self, face: u32) -> Option<&Vector3<f64>> {
+        match &self.normals {
+            Normals::Shared(n) => Some(n),
+            Normals::Each(all) => Some(&all[face as usize]).filter(|n| **n != Vector3::zeros()),
         }
     }
 

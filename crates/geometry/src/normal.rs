@@ -179,6 +179,10 @@ mod tests {
             let want = exact::cross(&exact::difference(&t[1], &t[0]), &exact::difference(&t[2], &t[0]));
             let want = Vector3::from_fn(|i, _| exact::nearest(&want[i]));
             worst = worst.max((got - want).norm() / want.norm());
+            for k in [-200, 200] {
+                let [a, b, c] = t.map(|p| p.map(|x| scale(x, k)));
+                assert_eq!(cross_compensated(&a, &b, &c), got.map(|x| scale(x, 2 * k)), "2^{k}");
+            }
         }
         assert!(worst <= NORMAL_BOUND, "worst relative error {} u", worst / UNIT_ROUNDOFF);
     }
@@ -194,5 +198,24 @@ mod tests {
             assert!(a.area == area || (a.area - area).abs() <= NORMAL_BOUND * area, "{} for {s}, {h}", a.area);
         }
         assert!(vector_area(&t(f64::MAX, 0.0)).is_none());
+    }
+
+    #[test]
+    fn r39_needles_across_an_axis_have_their_sign_and_their_area() {
+        // What magnitude the products have is seen in one component only, and it decides whether f64 will do.
+        for (axis, k) in (0..3).flat_map(|axis| (8..50).map(move |k| (axis, k))) {
+            let across = |x: f64, y: f64| {
+                let mut p = Point3::origin();
+                (p[(axis + 1) % 3], p[(axis + 2) % 3]) = (x, y);
+                p
+            };
+            let t = [Point3::origin(), across(1.3, 0.000_17), across(0.7, 0.7 * 0.000_17 / 1.3 + scale(0.000_1, -k))];
+            for t in [t, [t[0], t[2], t[1]]] {
+                let (got, want) = (vector_area(&t).unwrap(), exact_vector_area(&t[0], &t[1..]).unwrap());
+                assert_eq!(got.normal, want.normal, "{t:?}");
+                assert_eq!(want.normal.abs(), Vector3::ith(axis, 1.0));
+                assert!((got.area - want.area).abs() <= NORMAL_BOUND * want.area, "area {:e} of {t:?}", got.area);
+            }
+        }
     }
 }

@@ -4,7 +4,7 @@
 //! its dense output. The curve is kept as its start and its Taylor terms there, which for a line and a parabola are exact; the
 //! Bézier control points, which bound it, are made where they are needed.
 
-use crate::bounds::Aabb;
+use crate::bounds::{Aabb, amax};
 use crate::clearance::{Clearance, MAX_DEGREE};
 use nalgebra::{Point3, Vector3};
 
@@ -13,6 +13,8 @@ use nalgebra::{Point3, Vector3};
 pub struct Path {
     start: Point3<f64>,
     terms: [Vector3<f64>; MAX_DEGREE],
+    /// The largest |component| of each term.
+    sizes: [f64; MAX_DEGREE],
     degree: usize,
 }
 
@@ -31,26 +33,35 @@ impl Path {
     /// The path with up to four Taylor terms at its start; terms beyond the fourth are not taken.
     pub fn from_terms(start: Point3<f64>, terms: &[Vector3<f64>]) -> Self {
         let mut all = [Vector3::zeros(); MAX_DEGREE];
+        let mut sizes = [0.0; MAX_DEGREE];
         let mut degree = 0;
         for (k, term) in terms.iter().take(MAX_DEGREE).enumerate() {
-            all[k] = *term;
+            (all[k], sizes[k]) = (*term, amax(term));
             degree = k + 1;
         }
-        Self { start, terms: all, degree }
+        Self { start, terms: all, sizes, degree }
     }
 
     /// p(0).
+    #[inline]
     pub fn start(&self) -> Point3<f64> {
         self.start
     }
 
     /// The Taylor terms at the start, as many as the degree.
+    #[inline]
     pub fn terms(&self) -> &[Vector3<f64>] {
         &self.terms[..self.degree]
     }
 
     /// p(f) - p(0). Small displacements are accurate wherever the path is: they know nothing of the start.
+    #[inline]
     pub fn displacement(&self, f: f64) -> Vector3<f64> {
+        if self.degree <= 2 {
+            // What most paths are: the same sum, without a loop.
+            let [linear, quadratic, ..] = self.terms;
+            return (quadratic * f + linear) * f;
+        }
         self.terms().iter().rev().fold(Vector3::zeros(), |sum, term| (sum + term) * f)
     }
 
@@ -69,24 +80,35 @@ impl Path {
     }
 
     /// The distance along `normal` that is left at f when it is `gap` at f = 0: one dot product for each term.
+    #[inline]
     pub fn clearance(&self, gap: f64, normal: &Vector3<f64>) -> Clearance {
-        let mut c = [gap, 0.0, 0.0, 0.0, 0.0];
-        for (k, term) in self.terms().iter().enumerate() {
-            c[k + 1] = normal.dot(term);
-        }
-        Clearance::new(c)
+        // Terms beyond the degree are zero, and so are their products.
+        let [linear, quadratic, cubic, quartic] = &self.terms;
+        let further = |term: &Vector3<f64>| if self.degree <= 2 { 0.0 } else { normal.dot(term) };
+        Clearance::new([gap, normal.dot(linear), normal.dot(quadratic), further(cubic), further(quartic)])
     }
 
     /// No point of the path up to `f` is farther from the start than this, along any axis: the scale of its rounding errors.
+    #[inline]
     pub fn reach(&self, f: f64) -> f64 {
-        self.terms().iter().rev().fold(0.0, |sum, term| (sum + term.amax()) * f)
+        let [linear, quadratic, cubic, quartic] = self.sizes;
+        // The zeros of a lower degree leave the sum as it is.
+        if self.degree <= 2 {
+            (quadratic * f + linear) * f
+        } else {
+            (((quartic * f + cubic) * f + quadratic) * f + linear) * f
+        }
     }
 
-    /// The stretch of the path over [from, to] as seen from the start of the path: its end points, and `sagitta`, which no
-    /// point of the stretch is farther from the chord than.
+    /// A straight stand-in for the path over [from, to], as seen from the start of the path, and how far from it the path may be.
     pub fn chord(&self, from: f64, to: f64) -> Chord {
         let (a, b) = (self.displacement(from), self.displacement(to));
         let half = 0.5 * (to - from);
+        if self.degree <= 2 {
+            // The parabola is between the chord and the chord moved by the bend in its middle: half way between the two it is half as far.
+            let bend = self.terms[1] * (half * half * 0.5);
+            return Chord { from: a - bend, to: b - bend, sagitta: length(&bend) };
+        }
         // |p - chord| <= max |p''| (to - from)^2 / 8, and |p''| <= sum k (k-1) |t_k| f^(k-2).
         // All by 1/16, so that the factors up to 12 do not take a path out of the range of f64.
         let (mut bend, mut power) = (0.0, 1.0);
@@ -113,11 +135,11 @@ fn length(v: &Vector3<f64>) -> f64 {
 /// A straight stand-in for a stretch of a path, relative to the start of the path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Chord {
-    /// Where the stretch begins.
+    /// Where it begins.
     pub from: Vector3<f64>,
     /// Where it ends.
     pub to: Vector3<f64>,
-    /// How far the path may be from the chord.
+    /// How far the path may be from it.
     pub sagitta: f64,
 }
 
@@ -165,6 +187,7 @@ mod tests {
             Path::parabola(Point3::origin(), Vector3::zeros(), Vector3::new(f64::MAX / 4.0, f64::MAX / 4.0, 0.0));
         let (whole, half) = (path.chord(0.0, 1.0).sagitta, path.chord(0.0, 0.5).sagitta);
         assert!(whole.is_finite() && half == whole / 4.0, "{whole:e} {half:e}");
+        assert!(whole >= 0.17 * (f64::MAX / 4.0), "an eighth of the length of the term");
     }
 
     #[test]
@@ -179,5 +202,28 @@ mod tests {
                 assert!((on_path - on_chord).norm() <= chord.sagitta * (1.0 + 1e-12));
             }
         }
+    }
+
+    #[test]
+    fn the_sagitta_bounds_each_power_where_it_bends_most() {
+        for (k, size) in (1..4).flat_map(|k| [1.0, 1e6].map(|size| (k, size))) {
+            let mut terms = [Vector3::zeros(); MAX_DEGREE];
+            terms[k] = Vector3::x() * size;
+            let path = Path::from_terms(Point3::origin(), &terms);
+            let (from, to) = (0.9, 1.0);
+            let chord = path.chord(from, to);
+            let off = path.displacement(0.95).x - (chord.from.x + chord.to.x) / 2.0;
+            assert!(
+                off.abs() <= chord.sagitta * (1.0 + 1e-12) && chord.sagitta < 1.2 * off.abs(),
+                "f^{}: {off:e}",
+                k + 1
+            );
+        }
+    }
+
+    #[test]
+    fn a_box_around_a_straight_stretch_is_that_of_its_ends() {
+        let path = Path::line(Point3::new(1.0, 2.0, 3.0), Vector3::new(2.0, -1.0, 4.0));
+        assert_eq!(path.bounds(0.5, 1.0), Aabb::of_points(&[Point3::new(2.0, 1.5, 5.0), Point3::new(3.0, 1.0, 7.0)]));
     }
 }

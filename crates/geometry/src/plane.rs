@@ -168,6 +168,7 @@ mod tests {
             let plane = Plane::from_coefficients(0.0, 0.0, c, d).unwrap();
             assert_eq!(plane.normal().into_inner(), Vector3::new(0.0, 0.0, f64::signum(c)));
             assert_eq!(plane.point(), Point3::new(0.0, 0.0, z));
+            assert!(plane.point().iter().all(|c| c.is_sign_positive()), "no negative zero");
         }
         let up = Plane::from_point_normal(Point3::origin(), Vector3::new(0.0, 0.0, 1e-320)).unwrap();
         assert_eq!(up.normal().into_inner(), Vector3::z());

@@ -239,6 +239,12 @@ mod tests {
         ] {
             assert_eq!(polygon.locate(&Point3::new(x, y, 9.0)), place, "({x}, {y})");
         }
+        for start in 0..6 {
+            let mut from_there = ell();
+            from_there.rotate_left(start);
+            assert_eq!(Polygon::new(from_there).unwrap().reflex_vertices(), [(3 + 6 - start) % 6], "from {start}");
+        }
+        assert!(Polygon::new(flat([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])).unwrap().is_convex());
         let mut reversed = ell();
         reversed.reverse();
         let reversed = Polygon::new(reversed).unwrap();
@@ -272,6 +278,22 @@ mod tests {
             .map(|t| (v[t[1]] - v[t[0]]).cross(&(v[t[2]] - v[t[0]])).dot(&polygon.normal()) / 2.0)
             .collect();
         assert!(areas.len() == 4 && areas.iter().all(|a| *a > 0.0) && areas.iter().sum::<f64>() == 6.0, "{areas:?}");
+    }
+
+    #[test]
+    fn r36_the_plane_is_that_of_the_largest_triangle_and_so_is_its_bound() {
+        for k in [-600, 0, 600] {
+            let big = |v: Vec<Point3<f64>>| v.into_iter().map(|p| p.map(|c| scale(c, k))).collect::<Vec<_>>();
+            // Vertices 0, 1 and 2 are a triangle so thin that next to nothing would be off its plane.
+            let mut thin_first = flat([(0.0, 0.0), (1.0, 0.0), (2.0, 1e-9), (2.0, 2.0), (0.0, 2.0)]);
+            thin_first[4].z += 1e-9;
+            assert!(matches!(Polygon::new(big(thin_first)), Err(PolygonError::NotPlanar { .. })), "2^{k}");
+            // The legs 4 and 3 of a right triangle: perimeter 12, area 6, diameter 5.
+            let [x, y, z, w] = [(0.0, 0.0, 0.0), (4.0, 0.0, 0.0), (4.0, 3.0, 0.0), (3.0, 3.5, 0.5)];
+            let right = [x, y, z, w].map(|(x, y, z)| Point3::new(x, y, z)).to_vec();
+            let (distance, bound) = (scale(0.5, k), scale(planarity_bound(4.0, 5.0, 12.0, 6.0), k));
+            assert_eq!(Polygon::new(big(right)), Err(PolygonError::NotPlanar { vertex: 3, distance, bound }));
+        }
     }
 
     proptest! {

@@ -262,6 +262,39 @@ mod tests {
         }
     }
 
+    #[test]
+    fn the_bound_of_a_determinant_is_that_of_its_permanent_and_its_column() {
+        let p = Point3::<f64>::new;
+        let (a, b, c, o) = (p(2.0, 3.0, 5.0), p(7.0, 11.0, 13.0), p(17.0, 19.0, 23.0), Point3::origin());
+        // 5 (133 + 187) + 13 (51 + 38) + 23 (22 + 21), and the exact determinant.
+        let exact = exact::nearest(&orient3d_exact(&a, &b, &c, &o));
+        assert_eq!(orient3d_value(&a, &b, &c, &o), (exact, orient3d_bound(3746.0, 41.0)));
+        let up = [2.0, 3.0, 5.0].map(|z| p(0.0, 0.0, z));
+        assert_eq!(orient3d_value(&up[0], &up[1], &up[2], &o), (0.0, 12.0 * f64::MIN_POSITIVE));
+    }
+
+    #[test]
+    fn each_tier_decides_what_the_one_before_cannot() {
+        let (o, x, y) = (Point3::origin(), Point3::new(1.0, 0.0, 0.0), Point3::new(0.0, 1.0, 0.0));
+        let spread = Point3::new(2f64.powi(-100), 0.5, 0.0);
+        assert_eq!(orient3d_with_tier(&o, &x, &y, &spread), (Sign::Zero, Tier::Expansion));
+        // n.x is 2.8e-17 in the unit of n and computed as 5.6e-17, on whichever axes, however small the normal.
+        let (n, d) = (Vector3::new(0.1, -0.3, 0.2), Point3::new(3.0, 1.0, 0.0));
+        for i in 0..3 {
+            let turned = |v: [f64; 3]| [v[i], v[(i + 1) % 3], v[(i + 2) % 3]];
+            let (d, n) = (Point3::from(turned(d.into())), Vector3::from(turned(n.into())));
+            for k in [-200, 0, 200] {
+                let n = n.map(|c| scale(c, k));
+                assert_eq!(side_of_plane_with_tier(&n, &o, &d), (Sign::Positive, Tier::Rational), "axis {i}, 2^{k}");
+                assert_eq!(side_of_plane_with_tier(&n, &o, &(o - n)), (Sign::Negative, Tier::Filter));
+            }
+        }
+        for (n, sign) in [(2.0, Sign::Positive), (-2.0, Sign::Negative)] {
+            let (n, d) = (Vector3::new(0.0, n, 0.0), Point3::new(1e300, f64::from_bits(1), 1.0));
+            assert_eq!(side_of_plane_with_tier(&n.map(|c| scale(c, -1000)), &o, &d), (sign, Tier::Filter));
+        }
+    }
+
     /// A small multiple of a random power of two: collinear and coplanar points are common.
     fn coordinate() -> impl Strategy<Value = f64> {
         (-4i32..5, prop_oneof![Just(0i32), -1040i32..1000], 0u64..3)

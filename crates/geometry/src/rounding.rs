@@ -92,6 +92,10 @@ pub(crate) fn vector_area_bound(magnitude: f64, fans: usize) -> f64 {
 /// A plain cross product loses u / sine of its length: below 2^-6 that is more than 64 u.
 pub(crate) const NEEDLE_SINE_SQUARED: f64 = 1.0 / 4096.0;
 
+/// The square of the sine of an angle, 2^-200, above which a triangle has a normal at every scale of f64: |n|^2, of the order of its size to
+/// the fourth, is then a normal number if the size is at least 2^-200.
+pub(crate) const LEAST_SINE_SQUARED: f64 = f64::from_bits((1023 - 200) << 52);
+
 /// How far the f of [`segment_hits_triangle`](crate::segment::segment_hits_triangle) may be below the exact one: 256 u.
 ///
 /// A design choice: a smaller one sends more segments to rationals. Two determinants of a well-shaped query are off by some 7 u of
@@ -168,6 +172,12 @@ pub fn contact_doubt(extent: f64) -> f64 {
     5.0 * contact_bound(extent)
 }
 
+/// The distance between ball and triangle that is no contact, not even in doubt, as computed from planes with their normals scaled or
+/// not: [`contact_doubt`], and as much again as [`contact_bound`] allows the evaluation, threefold.
+pub(crate) fn screen_bound(extent: f64) -> f64 {
+    contact_doubt(extent) + 3.0 * contact_bound(extent)
+}
+
 /// How far a point at `distance` from a plane's own may seem to stand out of the plane, as computed from its unit normal.
 ///
 /// The normal is off by [`NORMAL_BOUND`] in each component, which lifts the point by sqrt(3) times that; the rest is
@@ -201,5 +211,42 @@ mod tests {
     fn gamma_is_n_u_and_a_little() {
         assert!(gamma(4) > 4.0 * UNIT_ROUNDOFF);
         assert!(gamma(4) < 4.0 * UNIT_ROUNDOFF * (1.0 + 8.0 * UNIT_ROUNDOFF));
+    }
+
+    /// Whether `bound` is `n` u of `x`, and more only by what covers its own rounding.
+    fn is_units(bound: f64, n: f64, x: f64) -> bool {
+        let least = n * UNIT_ROUNDOFF * x;
+        least < bound && bound < least * (1.0 + 32.0 * UNIT_ROUNDOFF)
+    }
+
+    #[test]
+    fn bounds_of_determinants_count_their_roundings_and_underflows() {
+        assert!(UNIT_ROUNDOFF == scale(1.0, -53) && UNIT_ROUNDOFF_F32 == scale(1.0, -24));
+        for x in [0.5, 4.0] {
+            assert!(is_units(orient2d_bound(x), 3.0, x) && is_units(orient3d_bound(x, 9.0), 7.0, x));
+            assert!(is_units(signed_distance_bound(x), 4.0, x) && is_units(vector_area_bound(x, 3), 8.0, x));
+        }
+        assert_eq!((orient2d_bound(0.0), signed_distance_bound(0.0)), (f64::from_bits(2), f64::from_bits(2)));
+        assert_eq!(orient3d_bound(0.0, 3.0), 5.0 * f64::MIN_POSITIVE);
+        assert_eq!(vector_area_bound(0.0, 3), 3.0 * f64::MIN_POSITIVE);
+        assert_eq!(NORMAL_BOUND, VECTOR_AREA_BOUND + 8.0 * UNIT_ROUNDOFF);
+    }
+
+    #[test]
+    fn bounds_of_positions_are_their_units_of_the_extent() {
+        let units = |bound: f64| bound / UNIT_ROUNDOFF;
+        assert_eq!([position_bound(3.0), segment_bound(3.0), contact_bound(3.0)].map(units), [48.0, 24.0, 48.0]);
+        assert_eq!([contact_doubt(3.0), hold_bound(2.0), point_radius(3.0)].map(units), [240.0, 256.0, 49152.0]);
+        let in_f32 = |reach, radius| segment_bound_f32(reach, radius) / UNIT_ROUNDOFF_F32;
+        assert_eq!([in_f32(0.0, 0.0), in_f32(3.0, 0.0), in_f32(0.0, 3.0), in_f32(3.0, 5.0)], [2.0, 50.0, 8.0, 60.0]);
+        // e = 14 u times the extent; (2 e, and e times diameter times perimeter over area) and 2 e over each height.
+        assert_eq!(
+            [planarity_bound(2.0, 3.0, 4.0, 2.0), planarity_bound(2.0, 0.0, 4.0, 2.0)].map(units),
+            [224.0, 56.0]
+        );
+        assert_eq!([fold_bound(2.0, 0.5, 0.25), fold_bound(4.0, 0.5, 0.25)].map(units), [336.0, 672.0]);
+        assert_eq!(LARGEST_ROUNDED_FOLD, scale(1.0, -30));
+        assert_eq!(NEEDLE_SINE_SQUARED.sqrt(), scale(1.0, -6));
+        assert_eq!([SEGMENT_FRACTION_BOUND, UNIT_LENGTH_BOUND].map(units), [256.0, 10.0]);
     }
 }

@@ -159,6 +159,7 @@ fn first(equalities: &[Linear], positive: &[Linear]) -> Option<Exact> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rounding::scale;
     use proptest::prelude::*;
 
     fn p(x: f64, y: f64, z: f64) -> Point3<f64> {
@@ -242,6 +243,26 @@ mod tests {
             hit(0.25, Feature::Vertex(0), true)
         );
         assert_eq!(segment_hits_triangle(&p(1.0, 0.0, -1.0), &p(1.0, 1.0, 3.0), &[m; 3]), SegmentHit::Miss);
+    }
+
+    #[test]
+    fn r08_f_of_a_plane_nearly_touched_is_within_its_bound_at_every_scale() {
+        let t = [p(0.1, 0.2, 0.3), p(1.3, 0.7, -0.4), p(-0.6, 0.9, 0.35)];
+        let normal = (t[1] - t[0]).cross(&(t[2] - t[0])).normalize();
+        let on = Point3::from((t[0].coords + t[1].coords + t[2].coords) / 3.0);
+        for (above, below) in (20..56).flat_map(|j| [(j, 0), (j, j), (0, j)]) {
+            let ends = [on + normal * scale(1.0, -above), on - normal * scale(1.0, -below)];
+            for k in [-200, -100, 0, 100, 200] {
+                let big = |q: Point3<f64>| q.map(|c| scale(c, k));
+                let (t, p0, p1) = (t.map(big), big(ends[0]), big(ends[1]));
+                let SegmentHit::Hit { f, .. } = segment_hits_triangle(&p0, &p1, &t) else { continue };
+                let [d0, d1] = [&p0, &p1].map(|q| orient3d_exact(&t[0], &t[1], &t[2], q));
+                let want = &d0 / (&d0 - d1);
+                let early = exact::nearest(&(want - exact::exact(f)));
+                let right = f >= 0.0 && (0.0..=SEGMENT_FRACTION_BOUND).contains(&early);
+                assert!(right, "f {f:e} early by {early:e}: 2^-{above} above, 2^-{below} below, scale 2^{k}");
+            }
+        }
     }
 
     fn coordinate() -> impl Strategy<Value = f64> {

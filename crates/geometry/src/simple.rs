@@ -108,8 +108,17 @@ mod tests {
         assert_eq!(first_crossing(&spike), Some((0, 1)));
         let spike_at_the_end = points([(1.0, 0.0), (1.0, 1.0), (0.0, 0.0), (2.0, 0.0)]);
         assert!(first_crossing(&spike_at_the_end).is_some());
+        assert_eq!(
+            first_crossing(&points([(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)])),
+            Some((0, 2)),
+            "folds back at the end"
+        );
         let touching = points([(0.0, 0.0), (4.0, 0.0), (4.0, 2.0), (2.0, 0.0), (0.0, 2.0)]);
         assert_eq!(first_crossing(&touching), Some((0, 2)));
+        let touching_from_below = points([(4.0, 0.0), (0.0, 0.0), (0.0, -2.0), (2.0, 0.0), (4.0, -2.0)]);
+        assert_eq!(first_crossing(&touching_from_below), Some((0, 2)));
+        let touching_from_the_left = points([(0.0, 4.0), (0.0, 0.0), (-2.0, 0.0), (0.0, 2.0), (-2.0, 4.0)]);
+        assert_eq!(first_crossing(&touching_from_the_left), Some((0, 2)));
         let nearly = points([(0.0, 0.0), (4.0, 0.0), (4.0, 2.0), (2.0, f64::from_bits(1)), (0.0, 2.0)]);
         assert_eq!(first_crossing(&nearly), None);
         let flat_vertices = points([(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (2.0, 2.0)]);

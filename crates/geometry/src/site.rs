@@ -85,6 +85,17 @@ impl Mesh {
         }
     }
 
+    /// Whether `face` is one of [`faces_at`](Self::faces_at) `site`.
+    pub fn is_at(&self, face: u32, site: Site) -> bool {
+        match site {
+            Site::Face(own) => face == own,
+            Site::Edge { face: own, edge } => {
+                face == own || self.neighbours(own, edge.into()).any(|other| other == face)
+            }
+            Site::Vertex { vertex, .. } => self.faces()[face as usize].contains(&vertex),
+        }
+    }
+
     /// The bounds of the region in which `site` is what of the mesh is nearest to a ball beside it.
     pub fn region(&self, site: Site) -> Vec<RegionBound> {
         let vertex = |v: u32| self.vertices()[v as usize];
@@ -224,3 +235,6 @@ impl Bend {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,13 +1,15 @@
 //! A moving ball against a mesh: the first contact, and what is touched there.
 
-use crate::bounds::Aabb;
+use crate::bounds::{Aabb, amax, largest, least};
 use crate::bvh::FatSegment;
-use crate::closest::{Feature, closest_point};
+use crate::closest::{Asked, Feature};
 use crate::contact::{Contact, MovingBall, contact_from};
 use crate::mesh::{Fold, Mesh};
-use crate::rounding::{contact_doubt, position_bound};
+use crate::rounding::{contact_doubt, position_bound, screen_bound};
+use crate::screen::{Stretch, is_off_plane};
 use crate::site::Site;
 use nalgebra::{Point3, Vector3};
+use smallvec::SmallVec;
 use std::cmp::Ordering;
 
 /// The first contact of a ball with a mesh.
@@ -42,6 +44,9 @@ pub struct Work {
 /// A path is cut no finer than into pieces whose sagitta is this share of the larger of the radius and a face's size.
 const SAGITTA_SHARE: f64 = 0.25;
 
+/// A little later than 1: where a path is back where it was, with room for rounding and for a surface that falls away.
+const JUST_AFTER: f64 = 1.0 + 1.0 / 64.0;
+
 impl Mesh {
     /// The first f in [0, `to`] at which `ball` touches the mesh, closing in: never late, never missed, and the same bits as if every
     /// face had been asked. `free_until(face)` is an f before which the ball is known not to touch that face.
@@ -53,13 +58,21 @@ impl Mesh {
         work: &mut Work,
     ) -> Option<FirstContact> {
         let start = ball.path.start();
-        let corners = [self.bounds().min(), self.bounds().max()];
-        let size = corners.map(|corner| (corner - start).amax()).into_iter().fold(ball.radius, f64::max);
+        let size = self.farthest_from(&start).max(ball.radius);
         let sagitta_limit = SAGITTA_SHARE * ball.radius.max(self.face_size());
-        let mut best: Option<FirstContact> = None;
-        // Front to back: the stretch to look at next is the last of the stack.
-        let mut stack = [(0.0, to); 64];
+        let doubt = screen_bound(size + ball.path.reach(to));
+        // Front to back: the stretch to look at next is the last of the stack. What the ball leaves it often comes back to: a first cut
+        // just after that.
+        let mut best = self.where_it_left(ball, to, &free_until, work);
+        let last = best.map_or(to, |found| found.f);
+        let mut stack = [(0.0, last); 64];
         let mut depth = 1;
+        let back = ball.holds.iter().map(|hold| hold.until).fold(f64::INFINITY, least) * JUST_AFTER;
+        if back > 0.0 && back < last {
+            stack[0].0 = back;
+            stack[1] = (0.0, back);
+            depth = 2;
+        }
         while depth > 0 {
             depth -= 1;
             let (from, end) = stack[depth];
@@ -67,9 +80,11 @@ impl Mesh {
             let (a, b) = (start + chord.from, start + chord.to);
             // What a contact in doubt may be off by counts as near, so that the boxes leave out no face that would report one.
             let reach = ball.path.reach(end);
-            let margin = position_bound(a.coords.amax().max(b.coords.amax()).max(reach)) + contact_doubt(size + reach);
+            let margin =
+                position_bound(largest(largest(amax(&a.coords), amax(&b.coords)), reach)) + contact_doubt(size + reach);
             let radius = ball.radius + chord.sagitta + margin;
-            if !Aabb::of_points(&[a, b]).inflate(radius).intersects(self.bounds()) {
+            // The margin has room for the rounding of this as well.
+            if self.bounds().is_off(&a, &b, radius) {
                 continue;
             }
             let middle = 0.5 * (from + end);
@@ -79,26 +94,62 @@ impl Mesh {
                 depth += 2;
                 continue;
             }
+            let mut limit = end;
+            let mut stretch = Stretch::new(ball.path, from, limit, ball.radius + doubt);
             work.nodes += self.bvh().visit(&FatSegment { from: a, to: b, radius }, |face| {
+                if best.is_some_and(|found| found.face == face) {
+                    return (limit - from) / (end - from);
+                }
+                work.triangles += 1;
+                let triangle = self.triangle(face);
                 // Asked from the start of the path, not of the piece: the answer does not depend on the pieces.
-                let limit = best.map_or(to, |found| found.f);
-                let free = free_until(face);
-                if free <= limit {
-                    work.triangles += 1;
-                    let contact = contact_from(ball, &self.triangle(face), free, limit, &mut work.rounds);
-                    if let Contact::At { f, .. } = contact
-                        && best.is_none_or(|found| (f.min(to), face) < (found.f, found.face))
-                    {
-                        best = Some(FirstContact { f: f.min(to), face });
+                let free = ball.held_off(&triangle, free_until(face));
+                if free > limit
+                    || self.plain_normal(face).is_some_and(|n| stretch.is_free_of(&stretch.local(&triangle), n))
+                {
+                    return (limit - from) / (end - from);
+                }
+                let asked = ball.asked(&triangle);
+                work.rounds += u64::from(limit < end);
+                if !(limit < end && ball.stays_off(&asked, free, limit, ball.radius + doubt))
+                    && let Contact::At { f, .. } = contact_from(ball, &asked, free, limit, &mut work.rounds)
+                    && best.is_none_or(|found| (f.min(to), face) < (found.f, found.face))
+                {
+                    best = Some(FirstContact { f: f.min(to), face });
+                    if f < limit {
+                        limit = f;
+                        stretch = Stretch::new(ball.path, from, limit, ball.radius + doubt);
                     }
                 }
-                best.map_or(f64::INFINITY, |found| (found.f - from) / (end - from))
+                (limit - from) / (end - from)
             });
             if best.is_some_and(|found| found.f <= end) {
                 break;
             }
         }
         best
+    }
+
+    /// The first contact with a face that the ball leaves by a short hop: most such hops end there.
+    fn where_it_left(
+        &self,
+        ball: &MovingBall,
+        to: f64,
+        free_until: &impl Fn(u32) -> f64,
+        work: &mut Work,
+    ) -> Option<FirstContact> {
+        let hold = ball.holds.iter().min_by(|a, b| a.until.total_cmp(&b.until))?;
+        let face = hold.face?;
+        if !(hold.until > 0.0 && hold.until <= to && ball.path.reach(hold.until) <= self.face_size()) {
+            return None;
+        }
+        work.triangles += 1;
+        let triangle = self.triangle(face);
+        let free = ball.held_off(&triangle, free_until(face));
+        match contact_from(ball, &ball.asked(&triangle), free, to, &mut work.rounds) {
+            Contact::At { f, .. } => Some(FirstContact { f: f.min(to), face }),
+            Contact::Miss => None,
+        }
     }
 
     /// What a ball of `radius` at `centre`, moving along `heading`, touches, to within `tolerance`, in the order of the sites.
@@ -113,15 +164,20 @@ impl Mesh {
         radius: f64,
         tolerance: f64,
         work: &mut Work,
-    ) -> Vec<Touch> {
+    ) -> SmallVec<[Touch; 4]> {
         let ahead = Point3::from(heading.try_normalize(0.0).unwrap_or_else(Vector3::zeros) * tolerance);
         let reach = radius + tolerance;
-        let mut found: Vec<(Site, Vector3<f64>)> = Vec::new();
+        let mut found: SmallVec<[(Site, Vector3<f64>); 8]> = SmallVec::new();
+        let doubt = screen_bound(self.farthest_from(centre).max(reach));
         let around = Aabb::of_points(&[*centre]).inflate(reach + position_bound(centre.coords.amax() + reach));
         work.nodes += self.bvh().visit_box(&around, |face| {
             work.triangles += 1;
-            let local = self.triangle(face).map(|v| Point3::from(v - centre));
-            let closest = closest_point(&local, &Point3::origin());
+            let local = self.triangle(face).map(|v| v - centre);
+            if self.plain_normal(face).is_some_and(|n| is_off_plane(&local, n, reach + doubt)) {
+                return;
+            }
+            let asked = Asked::new(&local.map(Point3::from));
+            let closest = asked.closest(&Point3::origin());
             if closest.offset.norm() <= reach {
                 let site = match closest.feature {
                     // Rounding found the edge: in a fold that rises towards the ball, it is the face that is touched.
@@ -130,7 +186,7 @@ impl Mesh {
                     }
                     Feature::Face => Site::Face(face),
                     // Face before edge before vertex.
-                    feature => self.site(face, feature.min(closest_point(&local, &ahead).feature)),
+                    feature => self.site(face, feature.min(asked.closest(&ahead).feature)),
                 };
                 found.push((site, closest.offset));
             }
@@ -147,6 +203,11 @@ impl Mesh {
             .filter(|(site, _)| !hidden(site))
             .filter_map(|&(site, away)| self.normal_at(site, &away).map(|normal| Touch { site, normal }))
             .collect()
+    }
+
+    /// How far along an axis the mesh reaches from `x`.
+    fn farthest_from(&self, x: &Point3<f64>) -> f64 {
+        (self.bounds().min() - x).amax().max((self.bounds().max() - x).amax())
     }
 
     /// Whether the fold at `edge` of `face` is hollow on the side that `away` points to, and `away` at least `height` above the face.
@@ -188,3 +249,6 @@ impl Mesh {
         self.bounds().extent().amax() / (self.faces().len() as f64).sqrt()
     }
 }
+
+#[cfg(test)]
+mod tests;

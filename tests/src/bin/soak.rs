@@ -54,13 +54,13 @@ fn bounce(bounces: u64, only: Option<&str>) -> bool {
         let wanted = if only.is_some() { bounces } else { bounces * family.share / 100 };
         let report = soak(&places, family, wanted.max(1), u64::MAX);
         row(&format!("{}: {}", family.name, family.what), &report, since);
+        report.flaws.iter().for_each(|flaw| eprintln!("{flaw}"));
         all.add(report);
     }
     row("all", &all, began);
     println!(
         "\nDeepest and most gained as a part of what rounding may take or give; a stall is events in a row without time passing, steps are those from one event to the next."
     );
-    all.flaws.iter().for_each(|flaw| println!("{flaw}"));
     all.is_sound()
 }
 
@@ -93,10 +93,10 @@ fn shoot_all(shots: u64) -> bool {
             some.into_iter().for_each(|piece| tally.add(piece));
         }
         tell(&format!("{} {:?}", closed.body, closed.treatment), &tally, since);
+        tally.wrong.iter().for_each(|wrong| eprintln!("{wrong}"));
         sum.add(tally);
     }
     tell("all", &sum, began);
-    sum.wrong.iter().for_each(|wrong| println!("{wrong}"));
     sum.is_sound()
 }
 

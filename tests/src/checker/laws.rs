@@ -79,6 +79,8 @@ impl Checker<'_> {
                         Friction::None => 0.0,
                         Friction::Linear(c) => c.get() * ta.norm(),
                         Friction::Coulomb(mu) => mu.get() * -a,
+                        // What turns the ball is not told by its velocity.
+                        Friction::Grip(_) => (ta - tb).norm(),
                         Friction::Impulse(mu) => mu.get() * (1.0 + c_r) * -a,
                     };
                     let want = if ta.norm() > cut { ta * (1.0 - cut / ta.norm()) } else { Vector3::zeros() };

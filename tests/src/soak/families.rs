@@ -32,6 +32,13 @@ pub struct Unit {
     pub(super) closed: Option<Arc<Closed>>,
 }
 
+impl Unit {
+    /// The scene.
+    pub fn stage(&self) -> &Stage {
+        &self.stage
+    }
+}
+
 /// A kind of scene.
 pub struct Family {
     /// Its name.

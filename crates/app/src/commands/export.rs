@@ -18,7 +18,7 @@ pub fn export(args: &ExportArgs) -> Result<(), AppError> {
         return Err(AppError::Usage(format!("{path}: the form follows from the extension, which is .glb")));
     }
     let mut out = Target::open(&args.output)?;
-    let replay = Replay::of(&args.input)?;
+    let replay = Replay::of(&args.input.scene, &args.input.how)?;
     if let model::Keys::Frames { fps } = args.keys
         && fps * replay.scene.duration * replay.balls.len() as f64 > KEY_LIMIT
     {
@@ -28,7 +28,7 @@ pub fn export(args: &ExportArgs) -> Result<(), AppError> {
     let name = args.input.scene.file_stem().unwrap_or_default().to_string_lossy();
     out.write(&model::glb(&name, &replay, args.keys)?)?;
     out.finish()?;
-    if !args.input.quiet {
+    if !args.input.how.quiet {
         say(&replay.summary.text());
         if !is_stdout(&args.output) {
             say(&format!("model     {}, keys: {}", args.output.display(), args.keys));

@@ -1,9 +1,16 @@
 //! The commands, one file each.
 
+pub mod accuracy;
+pub mod balls;
 pub mod check;
+pub mod compare;
 pub mod completions;
+pub mod explain;
 pub mod export;
+pub mod init;
+pub mod man;
 pub mod materials;
+pub mod plot;
 pub mod run;
 pub mod schema;
 pub mod view;

@@ -8,7 +8,6 @@ use crate::output::target::Demand;
 use crate::scene;
 use crate::summary::{Tally, line, points_note};
 use crate::terminal::{Progress, say};
-use carom_dynamics::plan::Plan;
 use carom_dynamics::run::run_balls;
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
@@ -17,16 +16,16 @@ use std::time::Instant;
 /// Simulates the scene.
 pub fn run(args: &RunArgs) -> Result<(), AppError> {
     refuse_clashes(args)?;
-    let loaded = scene::load(&args.input.scene, args.input.balls.as_deref())?;
-    let plan = Plan::new(&loaded.scene).map_err(|error| loaded.refuse(&error))?;
+    let loaded = scene::load(&args.input.scene, args.input.how.balls.as_deref())?;
+    let plan = loaded.plan(args.input.how.quiet)?;
     let recording = Recording::new(args, &loaded.scene)?;
-    let mut files = Files::open(args, &recording)?;
+    let mut files = Files::open(args, &recording, &loaded.scene)?;
     let start = Instant::now();
     let mut tally = Tally::new(&loaded.scene);
-    let mut progress = Progress::new(loaded.scene.balls.len(), args.input.quiet);
+    let mut progress = Progress::new(loaded.scene.balls.len(), args.input.how.quiet);
     // Why the run was broken off: an output that cannot be written, or none that is read any more.
     let mut stopped = None;
-    let threads = args.input.threads.map(NonZeroUsize::get);
+    let threads = args.input.how.threads.map(NonZeroUsize::get);
     let simulated = run_balls(
         &plan,
         threads,
@@ -49,7 +48,10 @@ pub fn run(args: &RunArgs) -> Result<(), AppError> {
     }
     let summary = tally.finish(start.elapsed());
     files.finish(&summary.json())?;
-    if !args.input.quiet {
+    if !args.input.how.quiet {
+        if let Some(choice) = &loaded.choice {
+            say(&super::explain::chosen(choice));
+        }
         say(&summary.text());
         points_note(&plan).inspect(|note| say(&line("points", note)));
     }

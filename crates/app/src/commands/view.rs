@@ -11,11 +11,11 @@ use crate::view;
 pub fn view(args: &ViewArgs) -> Result<(), AppError> {
     // A place where nothing can be written is known before the run.
     let mut out = Target::open(&args.output)?;
-    let replay = Replay::of(&args.input)?;
+    let replay = Replay::of(&args.input.scene, &args.input.how)?;
     let title = args.input.scene.file_name().unwrap_or_default().to_string_lossy();
     out.write(view::page(&title, &replay).as_bytes())?;
     out.finish()?;
-    if !args.input.quiet {
+    if !args.input.how.quiet {
         say(&replay.summary.text());
         if !is_stdout(&args.output) {
             say(&format!("page      {}, for any browser", args.output.display()));

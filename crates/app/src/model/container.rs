@@ -99,12 +99,9 @@ impl Container {
 
 /// The least and the greatest along each axis.
 fn range(vectors: &[[f32; 3]]) -> ([f32; 3], [f32; 3]) {
-    let mut range = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
-    for v in vectors {
-        for axis in 0..3 {
-            range.0[axis] = range.0[axis].min(v[axis]);
-            range.1[axis] = range.1[axis].max(v[axis]);
-        }
-    }
-    range
+    let fold = |axis: usize, pick: fn(f32, f32) -> f32, start: f32| vectors.iter().map(|v| v[axis]).fold(start, pick);
+    (
+        std::array::from_fn(|axis| fold(axis, f32::min, f32::INFINITY)),
+        std::array::from_fn(|axis| fold(axis, f32::max, f32::NEG_INFINITY)),
+    )
 }

@@ -1,9 +1,12 @@
 //! The outputs of a run: all of them are complete in the end, or none is there.
 
-use super::recorder::{Recorder, Recording};
+use super::recorder::{Recorder, Recording, Rows};
+use super::rows::{EventRows, FrameRows};
 use super::target::{Demand, Target, is_stdout};
+use super::{Form, parquet};
 use crate::cli::RunArgs;
 use crate::error::AppError;
+use carom_dynamics::scene::Scene;
 use std::path::{Path, PathBuf};
 
 /// The exit code of a program that was interrupted, by custom of the shells: 128 + SIGINT.
@@ -25,50 +28,44 @@ pub fn refuse_clashes(args: &RunArgs) -> Result<(), AppError> {
 
 /// The open outputs.
 pub struct Files {
-    events: Option<Target>,
-    frames: Option<Target>,
+    events: Option<Sheet>,
+    frames: Option<Sheet>,
     summary: Option<Target>,
+}
+
+/// A table that is being written.
+enum Sheet {
+    Rows(Target),
+    Columns(Box<parquet::Table>),
 }
 
 impl Files {
     /// Opens what the command line asks for, so that a place where nothing can be written is known before the run.
-    pub fn open(args: &RunArgs, recording: &Recording) -> Result<Self, AppError> {
+    pub fn open(args: &RunArgs, recording: &Recording, scene: &Scene) -> Result<Self, AppError> {
         let open = |path: &Option<PathBuf>| path.as_deref().map(Target::open).transpose();
-        let mut files =
-            Self { events: open(&args.events)?, frames: open(&args.frames)?, summary: open(&args.summary)? };
-        files.clear_when_interrupted()?;
-        if let Some((target, table)) = files.events.as_mut().zip(recording.events.as_ref()) {
-            target.write(table.header().as_bytes())?;
-        }
-        if let Some((target, table)) = files.frames.as_mut().zip(recording.frames.as_ref()) {
-            target.write(table.header().as_bytes())?;
-        }
-        Ok(files)
-    }
-
-    /// Makes an interrupt take the unfinished files away before the program ends.
-    fn clear_when_interrupted(&self) -> Result<(), AppError> {
-        let targets = [&self.events, &self.frames, &self.summary];
-        let unfinished: Vec<PathBuf> =
-            targets.into_iter().flatten().filter_map(Target::temporary).map(Path::to_owned).collect();
-        let clear = move || {
-            for path in &unfinished {
-                // One that has its name by now is finished, and no longer there.
-                let _ = std::fs::remove_file(path);
-            }
-            std::process::exit(INTERRUPTED);
-        };
-        ctrlc::set_handler(clear).map_err(|e| AppError::Internal(format!("cannot watch for interrupts: {e}")))
+        let [events, frames, summary] = [open(&args.events)?, open(&args.frames)?, open(&args.summary)?];
+        clear_when_interrupted([&events, &frames, &summary])?;
+        let events = events.zip(recording.events.as_ref()).map(|(target, form)| Sheet::events(target, form, scene));
+        let frames = frames.zip(recording.frames.as_ref()).map(|(target, form)| Sheet::frames(target, form, scene));
+        Ok(Self { events: events.transpose()?, frames: frames.transpose()?, summary })
     }
 
     /// Writes the rows of a ball. There is no more demand when nobody reads the only output any more.
-    pub fn write(&mut self, (events, frames): &Recorder<'_>) -> Result<Demand, AppError> {
+    pub fn write(&mut self, recorder: &Recorder<'_>) -> Result<Demand, AppError> {
         let mut demand = Vec::with_capacity(2);
-        if let Some((target, recorder)) = self.events.as_mut().zip(events.as_ref()) {
-            demand.push(target.write(recorder.rows.as_bytes())?);
+        if let Some((sheet, events)) = self.events.as_mut().zip(recorder.events.as_ref()) {
+            demand.push(match (sheet, &events.rows) {
+                (Sheet::Rows(target), Rows::Text(_, text)) => target.write(text.as_bytes())?,
+                (Sheet::Columns(table), Rows::Items(events)) => table.push_events(recorder.ball, events)?,
+                _ => Demand::Open,
+            });
         }
-        if let Some((target, recorder)) = self.frames.as_mut().zip(frames.as_ref()) {
-            demand.push(target.write(recorder.rows.as_bytes())?);
+        if let Some((sheet, frames)) = self.frames.as_mut().zip(recorder.frames.as_ref()) {
+            demand.push(match (sheet, &frames.rows) {
+                (Sheet::Rows(target), Rows::Text(_, text)) => target.write(text.as_bytes())?,
+                (Sheet::Columns(table), Rows::Items(frames)) => table.push_frames(recorder.ball, frames)?,
+                _ => Demand::Open,
+            });
         }
         let unwanted = self.summary.is_none() && !demand.is_empty() && demand.iter().all(|d| *d == Demand::Closed);
         Ok(if unwanted { Demand::Closed } else { Demand::Open })
@@ -80,6 +77,52 @@ impl Files {
         if let Some(target) = &mut last {
             target.write(summary.as_bytes())?;
         }
-        [events, frames, last].into_iter().flatten().try_for_each(Target::finish)
+        // All are written to their end before the first gets its name.
+        let tables: Vec<Target> = [events, frames].into_iter().flatten().map(Sheet::end).collect::<Result<_, _>>()?;
+        tables.into_iter().chain(last).try_for_each(Target::finish)
     }
+}
+
+impl Sheet {
+    fn events(mut target: Target, form: &Form<EventRows>, scene: &Scene) -> Result<Self, AppError> {
+        match form {
+            Form::Rows(table) => {
+                target.write(table.header().as_bytes())?;
+                Ok(Self::Rows(target))
+            }
+            Form::Columns => parquet::Table::events(target, scene).map(Box::new).map(Self::Columns),
+        }
+    }
+
+    fn frames(mut target: Target, form: &Form<FrameRows>, scene: &Scene) -> Result<Self, AppError> {
+        match form {
+            Form::Rows(table) => {
+                target.write(table.header().as_bytes())?;
+                Ok(Self::Rows(target))
+            }
+            Form::Columns => parquet::Table::frames(target, scene).map(Box::new).map(Self::Columns),
+        }
+    }
+
+    /// Writes what is left; gives back where it went.
+    fn end(self) -> Result<Target, AppError> {
+        match self {
+            Self::Rows(target) => Ok(target),
+            Self::Columns(table) => table.finish(),
+        }
+    }
+}
+
+/// Makes an interrupt take the unfinished files away before the program ends.
+fn clear_when_interrupted(targets: [&Option<Target>; 3]) -> Result<(), AppError> {
+    let unfinished: Vec<PathBuf> =
+        targets.into_iter().flatten().filter_map(Target::temporary).map(Path::to_owned).collect();
+    let clear = move || {
+        for path in &unfinished {
+            // One that has its name by now is finished, and no longer there.
+            let _ = std::fs::remove_file(path);
+        }
+        std::process::exit(INTERRUPTED);
+    };
+    ctrlc::set_handler(clear).map_err(|e| AppError::Internal(format!("cannot watch for interrupts: {e}")))
 }

@@ -1,11 +1,11 @@
-//! What is kept of a ball while it is simulated: its rows, already in the form in which they are written.
+//! What is kept of a ball while it is simulated: its rows, as far as they can be made ready for their file already.
 
-use super::Format;
+use super::Form;
 use super::rows::{EventRows, FrameRows};
 use crate::cli::RunArgs;
 use crate::error::AppError;
 use carom_dynamics::events::Event;
-use carom_dynamics::observer::{FrameSampler, Observer, Segment};
+use carom_dynamics::observer::{Frame, FrameSampler, Observer, Segment};
 use carom_dynamics::scene::Scene;
 
 /// More frames of one ball than this are taken for a slip: they stay in memory until the ball is done.
@@ -14,9 +14,9 @@ const FRAME_LIMIT: f64 = 1e8;
 /// Which tables a run writes, and how.
 pub struct Recording {
     /// The table of events, if it is wanted.
-    pub events: Option<EventRows>,
+    pub events: Option<Form<EventRows>>,
     /// The table of frames, if it is wanted.
-    pub frames: Option<FrameRows>,
+    pub frames: Option<Form<FrameRows>>,
     fps: f64,
     duration: f64,
 }
@@ -28,11 +28,11 @@ impl Recording {
             let (fps, duration) = (args.fps, scene.duration);
             return Err(AppError::Usage(format!("--fps {fps} makes too many frames in {duration} s; choose fewer")));
         }
-        let events = args.events.as_deref().map(Format::of).transpose()?;
-        let frames = args.frames.as_deref().map(Format::of).transpose()?;
+        let events = args.events.as_deref().map(Form::of).transpose()?;
+        let frames = args.frames.as_deref().map(Form::of).transpose()?;
         Ok(Self {
-            events: events.map(|format| EventRows::new(format, &scene.surfaces)),
-            frames: frames.map(FrameRows::new),
+            events: events.map(|form| form.map(|format| EventRows::new(format, scene))),
+            frames: frames.map(|form| form.map(|format| FrameRows::new(format, scene))),
             fps: args.fps,
             duration: scene.duration,
         })
@@ -40,27 +40,70 @@ impl Recording {
 
     /// The recorder of a ball.
     pub fn of(&self, ball: usize) -> Recorder<'_> {
-        let events = self.events.as_ref().map(|table| EventRecorder { table, ball, rows: String::new() });
         let sampler = || FrameSampler::new(self.fps, self.duration);
-        let frames = self.frames.as_ref();
-        (events, frames.map(|table| FrameRecorder { table, ball, sampler: sampler(), written: 0, rows: String::new() }))
+        Recorder {
+            ball,
+            events: self.events.as_ref().map(|form| EventRecorder { ball, rows: Rows::of(form) }),
+            frames: self.frames.as_ref().map(|form| FrameRecorder {
+                ball,
+                sampler: sampler(),
+                written: 0,
+                rows: Rows::of(form),
+            }),
+        }
+    }
+}
+
+/// Rows of a table by some `R`, of some `T`.
+pub enum Rows<'a, R, T> {
+    /// As they are written, and by what.
+    Text(&'a R, String),
+    /// As they are, for columns to be made of them.
+    Items(Vec<T>),
+}
+
+impl<'a, R, T> Rows<'a, R, T> {
+    fn of(form: &'a Form<R>) -> Self {
+        match form {
+            Form::Rows(table) => Self::Text(table, String::new()),
+            Form::Columns => Self::Items(Vec::new()),
+        }
     }
 }
 
 /// Watches a ball.
-pub type Recorder<'a> = (Option<EventRecorder<'a>>, Option<FrameRecorder<'a>>);
+pub struct Recorder<'a> {
+    /// Which one.
+    pub ball: usize,
+    /// Its events, if they are wanted.
+    pub events: Option<EventRecorder<'a>>,
+    /// Its frames, if they are wanted.
+    pub frames: Option<FrameRecorder<'a>>,
+}
+
+impl Observer for Recorder<'_> {
+    fn event(&mut self, event: &Event) {
+        self.events.event(event);
+    }
+
+    fn segment(&mut self, segment: &Segment) {
+        self.frames.segment(segment);
+    }
+}
 
 /// Writes the events of a ball.
 pub struct EventRecorder<'a> {
-    table: &'a EventRows,
     ball: usize,
     /// What is written so far.
-    pub rows: String,
+    pub rows: Rows<'a, EventRows, Event>,
 }
 
 impl Observer for EventRecorder<'_> {
     fn event(&mut self, event: &Event) {
-        self.table.push(&mut self.rows, self.ball, event);
+        match &mut self.rows {
+            Rows::Text(table, text) => table.push(text, self.ball, event),
+            Rows::Items(events) => events.push(*event),
+        }
     }
 
     fn segment(&mut self, _: &Segment) {}
@@ -68,12 +111,11 @@ impl Observer for EventRecorder<'_> {
 
 /// Writes the frames of a ball.
 pub struct FrameRecorder<'a> {
-    table: &'a FrameRows,
     ball: usize,
     sampler: FrameSampler,
     written: usize,
     /// What is written so far.
-    pub rows: String,
+    pub rows: Rows<'a, FrameRows, Frame>,
 }
 
 impl Observer for FrameRecorder<'_> {
@@ -81,10 +123,11 @@ impl Observer for FrameRecorder<'_> {
 
     fn segment(&mut self, segment: &Segment) {
         self.sampler.segment(segment);
-        let frames = self.sampler.frames();
-        for frame in &frames[self.written..] {
-            self.table.push(&mut self.rows, self.ball, frame.time, &frame.state, frame.motion);
+        let frames = &self.sampler.frames()[self.written..];
+        self.written += frames.len();
+        match &mut self.rows {
+            Rows::Text(table, text) => frames.iter().for_each(|frame| table.push(text, self.ball, frame)),
+            Rows::Items(items) => items.extend(frames),
         }
-        self.written = frames.len();
     }
 }

@@ -1,39 +1,54 @@
 //! Events and frames as rows of CSV or JSON, their numbers so that they read back to the same bits.
 
 use super::Format;
-use carom_dynamics::body::State;
 use carom_dynamics::events::{Event, EventKind, Motion};
-use carom_dynamics::surface::Surface;
+use carom_dynamics::observer::Frame;
+use carom_dynamics::scene::Scene;
+use nalgebra::Vector3;
 use std::fmt::{self, Write};
 
-const EVENT_COLUMNS: [&str; 17] = [
+/// The last three only for scenes in which balls turn.
+const EVENT_COLUMNS: [&str; 20] = [
     "t", "ball", "kind", "surface", "face", "x", "y", "z", "nx", "ny", "nz", "vx_in", "vy_in", "vz_in", "vx", "vy",
-    "vz",
+    "vz", "wx", "wy", "wz",
 ];
 
-const FRAME_COLUMNS: [&str; 9] = ["t", "ball", "x", "y", "z", "vx", "vy", "vz", "state"];
+/// The last three only for scenes in which balls turn.
+const FRAME_COLUMNS: [&str; 12] = ["t", "ball", "x", "y", "z", "vx", "vy", "vz", "state", "wx", "wy", "wz"];
+
+/// The columns of a table of events, without those of spin where there is none.
+pub fn event_columns(scene: &Scene) -> &'static [&'static str] {
+    &EVENT_COLUMNS[..EVENT_COLUMNS.len() - if scene.spins() { 0 } else { 3 }]
+}
+
+/// The columns of a table of frames, without those of spin where there is none.
+pub fn frame_columns(scene: &Scene) -> &'static [&'static str] {
+    &FRAME_COLUMNS[..FRAME_COLUMNS.len() - if scene.spins() { 0 } else { 3 }]
+}
 
 /// Writes events.
 pub struct EventRows {
     format: Format,
     /// The names of the surfaces, quoted as the format wants it.
     surfaces: Vec<String>,
+    columns: &'static [&'static str],
 }
 
 impl EventRows {
-    /// For a scene with these surfaces.
-    pub fn new(format: Format, surfaces: &[Surface]) -> Self {
-        Self { format, surfaces: surfaces.iter().map(|s| quoted(&s.name, format)).collect() }
+    /// For a scene.
+    pub fn new(format: Format, scene: &Scene) -> Self {
+        let surfaces = scene.surfaces.iter().map(|s| quoted(&s.name, format)).collect();
+        Self { format, surfaces, columns: event_columns(scene) }
     }
 
     /// What comes before the first row.
     pub fn header(&self) -> String {
-        header(self.format, &EVENT_COLUMNS)
+        header(self.format, self.columns)
     }
 
     /// Appends a row.
     pub fn push(&self, rows: &mut String, ball: usize, event: &Event) {
-        let mut row = Row::new(rows, self.format, &EVENT_COLUMNS);
+        let mut row = Row::new(rows, self.format, self.columns);
         row.number(event.time);
         row.plain(ball);
         row.word(kind_name(event.kind));
@@ -43,6 +58,7 @@ impl EventRows {
         row.vector(event.normal.as_ref());
         row.vector(event.velocity_in.as_ref());
         row.vector(event.velocity.as_ref());
+        row.spin(event.spin, self.columns.len() == EVENT_COLUMNS.len());
         row.end();
     }
 }
@@ -50,27 +66,30 @@ impl EventRows {
 /// Writes frames.
 pub struct FrameRows {
     format: Format,
+    columns: &'static [&'static str],
 }
 
 impl FrameRows {
-    /// In this format.
-    pub fn new(format: Format) -> Self {
-        Self { format }
+    /// For a scene.
+    pub fn new(format: Format, scene: &Scene) -> Self {
+        Self { format, columns: frame_columns(scene) }
     }
 
     /// What comes before the first row.
     pub fn header(&self) -> String {
-        header(self.format, &FRAME_COLUMNS)
+        header(self.format, self.columns)
     }
 
     /// Appends a row.
-    pub fn push(&self, rows: &mut String, ball: usize, time: f64, state: &State, motion: Motion) {
-        let mut row = Row::new(rows, self.format, &FRAME_COLUMNS);
-        row.number(time);
+    pub fn push(&self, rows: &mut String, ball: usize, frame: &Frame) {
+        let Frame { time, state, motion, spin } = frame;
+        let mut row = Row::new(rows, self.format, self.columns);
+        row.number(*time);
         row.plain(ball);
         row.vector(state.position.coords.as_ref());
         row.vector(state.velocity.as_ref());
-        row.word(motion_name(motion));
+        row.word(motion_name(*motion));
+        row.spin(*spin, self.columns.len() == FRAME_COLUMNS.len());
         row.end();
     }
 }
@@ -80,6 +99,7 @@ pub fn kind_name(kind: EventKind) -> &'static str {
     match kind {
         EventKind::Impact => "impact",
         EventKind::Slide => "slide",
+        EventKind::Roll => "roll",
         EventKind::Rest => "rest",
         EventKind::Leave => "leave",
         EventKind::Wake => "wake",
@@ -97,6 +117,7 @@ pub fn motion_name(motion: Motion) -> &'static str {
     match motion {
         Motion::Flying => "flying",
         Motion::Sliding => "sliding",
+        Motion::Rolling => "rolling",
         Motion::Resting => "resting",
     }
 }
@@ -164,6 +185,13 @@ impl<'a> Row<'a> {
 
     fn vector(&mut self, v: &[f64; 3]) {
         v.iter().for_each(|&x| self.number(x));
+    }
+
+    /// The angular velocity where the table has it: 0 of a ball that does not turn beside others that do.
+    fn spin(&mut self, spin: Option<Vector3<f64>>, is_told: bool) {
+        if is_told {
+            self.vector(spin.unwrap_or_else(Vector3::zeros).as_ref());
+        }
     }
 
     fn plain(&mut self, what: impl fmt::Display) {

@@ -47,6 +47,11 @@ impl Target {
         }
     }
 
+    /// What the user calls it.
+    pub fn shown(&self) -> &str {
+        &self.shown
+    }
+
     /// The temporary file, if there is one: what an interrupted program has to clear away.
     pub fn temporary(&self) -> Option<&Path> {
         match &self.writer {
@@ -57,23 +62,13 @@ impl Target {
 
     /// Writes all of `bytes`.
     pub fn write(&mut self, bytes: &[u8]) -> Result<Demand, AppError> {
-        let written = match &mut self.writer {
-            Writer::Stdout(out) => out.write_all(bytes),
-            Writer::Closed => Ok(()),
-            Writer::Beside { file, .. } => file.write_all(bytes),
-            Writer::Direct(file) => file.write_all(bytes),
-        };
+        let written = self.writer.write_all(bytes);
         self.settle(written)
     }
 
     /// Completes the output: only now does a file appear under its name.
     pub fn finish(mut self) -> Result<(), AppError> {
-        let flushed = match &mut self.writer {
-            Writer::Stdout(out) => out.flush(),
-            Writer::Closed => Ok(()),
-            Writer::Beside { file, .. } => file.flush(),
-            Writer::Direct(file) => file.flush(),
-        };
+        let flushed = self.writer.flush();
         self.settle(flushed)?;
         if let Writer::Beside { file, path } = self.writer {
             let renamed =
@@ -95,6 +90,37 @@ impl Target {
             Err(source) => Err(AppError::Write { path: self.shown.clone(), source }),
             Ok(()) if matches!(self.writer, Writer::Closed) => Ok(Demand::Closed),
             Ok(()) => Ok(Demand::Open),
+        }
+    }
+}
+
+/// For writers of forms that know nothing of a demand.
+impl Write for Target {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.writer.write_all(bytes).map(|()| bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.writer.flush()
+    }
+}
+
+impl Write for Writer {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match self {
+            Writer::Stdout(out) => out.write(bytes),
+            Writer::Closed => Ok(bytes.len()),
+            Writer::Beside { file, .. } => file.write(bytes),
+            Writer::Direct(file) => file.write(bytes),
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match self {
+            Writer::Stdout(out) => out.flush(),
+            Writer::Closed => Ok(()),
+            Writer::Beside { file, .. } => file.flush(),
+            Writer::Direct(file) => file.flush(),
         }
     }
 }

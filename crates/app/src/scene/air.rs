@@ -1,7 +1,7 @@
 //! From the keys of `[air]` to what the air does.
 
 use super::build::{Builder, at};
-use super::file::{AirTable, DragLaw, DragTable};
+use super::file::{AirTable, DragLaw, DragOf, DragTable};
 use super::problem::Problem;
 use carom_dynamics::effects::buoyancy::Buoyancy;
 use carom_dynamics::effects::drag::Drag;
@@ -18,7 +18,8 @@ pub struct Air {
     pub buoyancy: Option<Buoyancy>,
 }
 
-const LAWS: &str = "drag = { linear = k } in kg/s, or drag = { coefficient = C, density = rho }, or drag = \"sphere\"";
+const LAWS: &str =
+    "drag = { linear = k } in kg/s, drag = { coefficient = C, density = rho }, drag = \"ball\" or drag = \"sphere\"";
 
 /// What to say where a density is missing.
 const DENSITY: &str = "add `density` to [air]: 1.204 kg/m^3 at 20 C";
@@ -52,7 +53,11 @@ impl Builder<'_> {
     fn drag(&mut self, drag: &DragTable, air: &AirTable) -> Option<Drag> {
         let table = match drag {
             DragTable::Law(table) => table,
-            DragTable::Sphere(_) => {
+            DragTable::Of(DragOf::Ball) => {
+                let density = self.density(air, "drag")?;
+                return self.accept(at!["air", "density"], Drag::of_ball(density));
+            }
+            DragTable::Of(DragOf::Sphere) => {
                 let density = self.density(air, "drag")?;
                 let Some(viscosity) = air.viscosity else {
                     let problem = Problem::new("the drag of a smooth sphere needs the viscosity of the air");

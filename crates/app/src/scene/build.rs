@@ -2,29 +2,34 @@
 
 use super::air::Air;
 use super::file::{
-    BallTable, FallingTable, FrictionTable, Integrator, MaterialTable, MethodTable, RestTable, RestitutionTable,
-    SceneFile,
+    EffectsShare, EffectsTable, FallingTable, FrictionTable, GripTable, Integrator, MaterialTable, MethodTable,
+    RestTable, RestitutionOf, RestitutionTable, SceneFile,
 };
 use super::problem::Problem;
 use super::shapes;
 use super::tree::{Node, Step};
-use carom_dynamics::body::Ball;
 use carom_dynamics::effects::friction::Friction;
 use carom_dynamics::effects::gravity::Gravity;
+use carom_dynamics::effects::grip::Grip;
 use carom_dynamics::effects::restitution::Restitution;
 use carom_dynamics::error::ValueError;
 use carom_dynamics::scene::{Method, Scene};
 use carom_dynamics::surface::Material;
 use carom_dynamics::tolerance::RestThresholds;
-use nalgebra::{Point3, Vector3};
+use nalgebra::Vector3;
 use std::collections::BTreeMap;
 use std::path::Path;
 
 /// The version of the scene format.
 pub const VERSION: u64 = 1;
 
-/// More balls than this in one grid are taken for a slip.
-pub const GRID_LIMIT: u64 = 10_000_000;
+/// What of a grip a message names, and its key.
+const GRIP_KEYS: [(&str, &str); 3] = [("grip", "mu"), ("tangential", "tangential"), ("rolling", "rolling")];
+
+fn grip(table: GripTable) -> Result<Friction, ValueError> {
+    let grip = Grip::new(table.mu)?.with_tangential(table.tangential)?.with_rolling(table.rolling)?;
+    Ok(Friction::Grip(grip))
+}
 
 /// Where in the file something is.
 macro_rules! at {
@@ -36,6 +41,8 @@ pub(super) use at;
 pub struct Builder<'a> {
     pub tree: &'a Node,
     pub problems: Vec<Problem>,
+    /// The error in m for which the method is to be chosen, if it is.
+    pub auto: Option<f64>,
 }
 
 impl Builder<'_> {
@@ -61,6 +68,12 @@ impl Builder<'_> {
             let message = format!("duration is {:?}, but must be finite and > 0, in s", file.duration);
             self.refuse(at!["duration"], Problem::new(message));
         }
+        if let Some(EffectsTable::Share(EffectsShare { auto })) = file.effects
+            && !(auto.is_finite() && auto > 0.0)
+        {
+            let message = format!("auto is {auto:?}, but must be a finite share > 0");
+            self.refuse(at!["effects", "auto"], Problem::new(message));
+        }
         let gravity = file.gravity.and_then(|g| self.accept(at!["gravity"], Gravity::uniform(Vector3::from(g))));
         let air = file.air.as_ref().map_or_else(Air::default, |air| self.air(air));
         let materials = self.materials(&file.materials);
@@ -84,8 +97,13 @@ impl Builder<'_> {
                 Some(FrictionTable::Linear(c_f)) => ("linear", Friction::linear(c_f)),
                 Some(FrictionTable::Coulomb(mu)) => ("coulomb", Friction::coulomb(mu)),
                 Some(FrictionTable::Impulse(mu)) => ("impulse", Friction::impulse(mu)),
+                Some(FrictionTable::Grip(table)) => ("grip", grip(table)),
             };
-            let friction = self.accept(at!["materials", name, "friction", law], friction);
+            let key = friction.err().and_then(|e| GRIP_KEYS.into_iter().find(|(word, _)| e.name.contains(word)));
+            let friction = match key {
+                Some((_, key)) => self.accept(at!["materials", name, "friction", law, key], friction),
+                None => self.accept(at!["materials", name, "friction", law], friction),
+            };
             let material = restitution.zip(friction);
             let material = material.map(|(restitution, friction)| Material { restitution, friction });
             materials.insert(name.to_owned(), material);
@@ -98,44 +116,13 @@ impl Builder<'_> {
             RestitutionTable::Constant(c_r) => {
                 self.accept(at!["materials", material, "restitution"], Restitution::new(c_r))
             }
+            RestitutionTable::Of(RestitutionOf::Ball) => Some(Restitution::of_ball()),
             RestitutionTable::Falling(FallingTable { coefficient, falls_above }) => {
                 let restitution = Restitution::falling(coefficient, falls_above);
                 let key = if Restitution::new(coefficient).is_err() { "coefficient" } else { "falls_above" };
                 self.accept(at!["materials", material, "restitution", key], restitution)
             }
         }
-    }
-
-    fn balls(&mut self, tables: &[BallTable]) -> (Vec<Ball>, Vec<usize>) {
-        let mut balls = Vec::new();
-        let mut origins = Vec::new();
-        for (i, table) in tables.iter().enumerate() {
-            let (count, step) = table.grid.as_ref().map_or(([1; 3], [0.0; 3]), |grid| (grid.count, grid.step));
-            if let Some(axis) = count.iter().position(|&n| n == 0) {
-                let problem = Problem::new("a grid has at least one ball along each axis");
-                self.refuse(at!["balls", i, "grid", "count", axis], problem);
-                continue;
-            }
-            let total = count.iter().map(|&n| u64::from(n)).try_fold(1_u64, u64::checked_mul);
-            if total.is_none_or(|n| n > GRID_LIMIT) {
-                let problem = Problem::new(format!("the grid has more than {GRID_LIMIT} balls"));
-                self.refuse(at!["balls", i, "grid", "count"], problem);
-                continue;
-            }
-            for place in places(table.position, count, step) {
-                match ball(place, table) {
-                    Ok(ball) => {
-                        balls.push(ball);
-                        origins.push(i);
-                    }
-                    Err(error) => {
-                        self.refuse(at!["balls", i, error.name], Problem::new(error.to_string()));
-                        break;
-                    }
-                }
-            }
-        }
-        (balls, origins)
     }
 
     fn rest(&mut self, table: &RestTable) -> Option<RestThresholds> {
@@ -158,7 +145,7 @@ impl Builder<'_> {
 
     fn method(&mut self, table: &MethodTable) -> Option<Method> {
         let stepping: Option<fn(f64) -> Method> = match table.integrator {
-            Integrator::Exact | Integrator::Adaptive => None,
+            Integrator::Exact | Integrator::Adaptive | Integrator::Auto => None,
             Integrator::Euler => Some(|step| Method::Euler { step }),
             Integrator::SemiImplicitEuler => Some(|step| Method::SemiImplicitEuler { step }),
             Integrator::Rk4 => Some(|step| Method::Rk4 { step }),
@@ -167,14 +154,14 @@ impl Builder<'_> {
             let problem = Problem::new("`step` is for a stepping method");
             self.refuse(at!["method", "step"], problem.help("stepping: `euler`, `semi-implicit-euler`, `rk4`"));
         }
-        if table.integrator != Integrator::Adaptive && table.tolerance.is_some() {
-            let problem = Problem::new("`tolerance` is for the integrator `adaptive`");
+        if !matches!(table.integrator, Integrator::Adaptive | Integrator::Auto) && table.tolerance.is_some() {
+            let problem = Problem::new("`tolerance` is for the integrators `adaptive` and `auto`");
             self.refuse(at!["method", "tolerance"], problem);
         }
         let key = if stepping.is_some() { "step" } else { "tolerance" };
         let value = match table.integrator {
             Integrator::Exact => return Some(Method::Exact),
-            Integrator::Adaptive => table.tolerance,
+            Integrator::Adaptive | Integrator::Auto => table.tolerance,
             _ => table.step,
         };
         let Some(value) = value else {
@@ -187,21 +174,10 @@ impl Builder<'_> {
             self.refuse(at!["method", key], Problem::new(format!("{key} is {value:?}, but must be finite and > 0")));
             return None;
         }
+        if table.integrator == Integrator::Auto {
+            self.auto = Some(value);
+            return None;
+        }
         Some(stepping.map_or(Method::Adaptive { tolerance: value }, |make| make(value)))
     }
-}
-
-/// The ball of a table, at `place`.
-fn ball(place: Point3<f64>, table: &BallTable) -> Result<Ball, ValueError> {
-    let ball = Ball::new(place, Vector3::from(table.velocity), table.radius, table.mass)?;
-    let ball = ball.spinning(Vector3::from(table.spin))?;
-    table.inertia.map_or(Ok(ball), |alpha| ball.with_inertia(alpha))
-}
-
-/// The places of a grid, x fastest.
-fn places(first: [f64; 3], count: [u32; 3], step: [f64; 3]) -> impl Iterator<Item = Point3<f64>> {
-    let at = move |axis: usize, n: u32| first[axis] + f64::from(n) * step[axis];
-    let [nx, ny, nz] = count;
-    (0..nz)
-        .flat_map(move |k| (0..ny).flat_map(move |j| (0..nx).map(move |i| Point3::new(at(0, i), at(1, j), at(2, k)))))
 }

@@ -1,6 +1,8 @@
 //! Keys whose value is a table, or else a number or a word.
 
-use super::file::{DragLaw, DragTable, FallingTable, RestitutionTable, SphereWord};
+use super::file::{
+    DragLaw, DragOf, DragTable, EffectsShare, EffectsTable, EffectsWord, FallingTable, RestitutionOf, RestitutionTable,
+};
 use serde::de::value::{MapAccessDeserializer, StrDeserializer};
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
 use std::fmt;
@@ -12,7 +14,7 @@ impl<'de> Deserialize<'de> for DragTable {
             type Value = DragTable;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a table, { linear = k } or { coefficient = C, density = rho }, or \"sphere\"")
+                f.write_str("a table, { linear = k } or { coefficient = C, density = rho }, or \"ball\" or \"sphere\"")
             }
 
             fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<DragTable, A::Error> {
@@ -20,10 +22,32 @@ impl<'de> Deserialize<'de> for DragTable {
             }
 
             fn visit_str<E: Error>(self, word: &str) -> Result<DragTable, E> {
-                SphereWord::deserialize(StrDeserializer::new(word)).map(DragTable::Sphere)
+                DragOf::deserialize(StrDeserializer::new(word)).map(DragTable::Of)
             }
         }
         deserializer.deserialize_any(Drag)
+    }
+}
+
+impl<'de> Deserialize<'de> for EffectsTable {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Effects;
+        impl<'de> Visitor<'de> for Effects {
+            type Value = EffectsTable;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("\"auto\", or a table such as { auto = 0.001 }")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<EffectsTable, A::Error> {
+                EffectsShare::deserialize(MapAccessDeserializer::new(map)).map(EffectsTable::Share)
+            }
+
+            fn visit_str<E: Error>(self, word: &str) -> Result<EffectsTable, E> {
+                EffectsWord::deserialize(StrDeserializer::new(word)).map(EffectsTable::Word)
+            }
+        }
+        deserializer.deserialize_any(Effects)
     }
 }
 
@@ -34,7 +58,9 @@ impl<'de> Deserialize<'de> for RestitutionTable {
             type Value = RestitutionTable;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str("a number from 0 to 1, or a table such as { coefficient = 0.9, falls_above = 1.0 }")
+                f.write_str(
+                    "a number from 0 to 1, a table such as { coefficient = 0.9, falls_above = 1.0 }, or \"ball\"",
+                )
             }
 
             fn visit_f64<E: Error>(self, c_r: f64) -> Result<RestitutionTable, E> {
@@ -47,6 +73,10 @@ impl<'de> Deserialize<'de> for RestitutionTable {
 
             fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<RestitutionTable, A::Error> {
                 FallingTable::deserialize(MapAccessDeserializer::new(map)).map(RestitutionTable::Falling)
+            }
+
+            fn visit_str<E: Error>(self, word: &str) -> Result<RestitutionTable, E> {
+                RestitutionOf::deserialize(StrDeserializer::new(word)).map(RestitutionTable::Of)
             }
         }
         deserializer.deserialize_any(Restitution)

@@ -20,6 +20,9 @@ pub struct SceneFile {
     pub duration: f64,
     /// The acceleration of gravity, in m/s^2, such as [0, 0, -9.81]. Without this key there is no gravity.
     pub gravity: Option<[f64; 3]>,
+    /// Which effects of the air are simulated: those that the scene gives, or "auto": just those whose omission would change a flight
+    /// time, a speed or a way by more than 1 %, or { auto = share } for another share. What is left out is told.
+    pub effects: Option<EffectsTable>,
     /// The air and its resistance. Without this table the balls fly in a vacuum.
     pub air: Option<AirTable>,
     /// The materials that surfaces are made of, by name.
@@ -37,6 +40,32 @@ pub struct SceneFile {
     pub method: Option<MethodTable>,
 }
 
+/// Which effects are simulated: "auto", or { auto = share }.
+#[derive(Debug, Clone, Copy, JsonSchema)]
+#[schemars(untagged)]
+pub enum EffectsTable {
+    /// Chosen to 1 %.
+    Word(EffectsWord),
+    /// Chosen to a share.
+    Share(EffectsShare),
+}
+
+/// How effects are chosen.
+#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum EffectsWord {
+    /// By what they would change.
+    Auto,
+}
+
+/// To which share effects are chosen.
+#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a table such as { auto = 0.001 }")]
+pub struct EffectsShare {
+    /// The share of a time, a speed or a way by which what is left out may change it, greater than 0.
+    pub auto: f64,
+}
+
 /// The air, and what it does to the balls.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, expecting = "a table such as { drag = { linear = 0.05 } }")]
@@ -47,7 +76,7 @@ pub struct AirTable {
     pub viscosity: Option<f64>,
     /// The velocity of the wind, in m/s. Needs a drag law or the Magnus force: without them, wind does nothing.
     pub wind: Option<[f64; 3]>,
-    /// The law of air resistance: `linear`, or `coefficient` and `density`, or "sphere".
+    /// The law of air resistance: `linear`, or `coefficient` and `density`, or "ball", or "sphere".
     pub drag: Option<DragTable>,
     /// The Magnus force on balls that spin.
     pub magnus: Option<MagnusTable>,
@@ -57,22 +86,25 @@ pub struct AirTable {
     pub buoyancy: Option<bool>,
 }
 
-/// Air resistance: { linear = k }, or { coefficient = C, density = rho } for the quadratic law, or "sphere" for the quadratic law with the
-/// coefficient of a smooth sphere at its Reynolds number, which needs the `density` and the `viscosity` of the air.
+/// Air resistance: { linear = k }, or { coefficient = C, density = rho } for the quadratic law. Or the quadratic law with the coefficient
+/// of each ball ("ball", which needs the `density` of the air), or with that of a smooth sphere at its Reynolds number ("sphere",
+/// which needs its `viscosity` as well).
 #[derive(Debug, JsonSchema)]
 #[schemars(untagged)]
 pub enum DragTable {
     /// One of the laws with a number.
     Law(DragLaw),
-    /// The law of a smooth sphere.
-    Sphere(SphereWord),
+    /// The quadratic law with a coefficient that is not the scene's.
+    Of(DragOf),
 }
 
-/// The word for the drag of a smooth sphere.
+/// Whose drag coefficient it is.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum SphereWord {
-    /// The coefficient of a smooth sphere at its Reynolds number.
+pub enum DragOf {
+    /// Each ball's own.
+    Ball,
+    /// That of a smooth sphere at its Reynolds number.
     Sphere,
 }
 
@@ -108,7 +140,7 @@ pub struct MaterialTable {
     pub friction: Option<FrictionTable>,
 }
 
-/// Restitution: a number from 0 to 1, or { coefficient = c_r, falls_above = v }.
+/// Restitution: a number from 0 to 1, or { coefficient = c_r, falls_above = v }, or "ball" for each ball's own.
 #[derive(Debug, Clone, Copy, JsonSchema)]
 #[schemars(untagged)]
 pub enum RestitutionTable {
@@ -116,6 +148,16 @@ pub enum RestitutionTable {
     Constant(#[schemars(range(min = 0.0, max = 1.0))] f64),
     /// Less for faster impacts.
     Falling(FallingTable),
+    /// Each ball's own.
+    Of(RestitutionOf),
+}
+
+/// Whose restitution it is.
+#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum RestitutionOf {
+    /// Each ball's own.
+    Ball,
 }
 
 /// Restitution that falls with the speed.
@@ -139,6 +181,22 @@ pub enum FrictionTable {
     Coulomb(f64),
     /// mu, the impulse law: the tangential speed falls by up to mu (1 + c_r) times the closing speed.
     Impulse(f64),
+    /// The impulse law at the point of contact, which turns the ball: { mu, tangential, rolling }.
+    Grip(GripTable),
+}
+
+/// Friction that turns the ball.
+#[derive(Debug, Clone, Copy, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, expecting = "a table such as { mu = 0.6 }")]
+pub struct GripTable {
+    /// mu, the coefficient of friction.
+    pub mu: f64,
+    /// e_x, the tangential restitution where the surface grips, from -1 to 1: at 0 the ball leaves rolling.
+    #[serde(default)]
+    pub tangential: f64,
+    /// c_rr, the rolling resistance: on a slope up to c_rr the ball does not roll.
+    #[serde(default)]
+    pub rolling: f64,
 }
 
 /// A fixed surface.
@@ -219,10 +277,12 @@ pub struct BallTable {
     /// Its velocity at the start, in m/s.
     #[serde(default)]
     pub velocity: [f64; 3],
-    /// Its radius in m; 0 is a point.
-    #[serde(default)]
+    /// The name of a ball that the program knows, such as "tennis"; `carom balls` lists them. It gives whatever of `radius`, `mass`,
+    /// `inertia`, `drag` and `restitution` is not given here.
+    pub ball: Option<String>,
+    /// Its radius in m; 0 is a point. Without this key: 0, or that of the `ball`.
     #[schemars(range(min = 0.0))]
-    pub radius: f64,
+    pub radius: Option<f64>,
     /// Its mass in kg, greater than 0; needed only by effects that divide a force by it.
     pub mass: Option<f64>,
     /// Its angular velocity at the start, in rad/s, right-handed; needed only by effects of spin.
@@ -230,6 +290,10 @@ pub struct BallTable {
     pub spin: [f64; 3],
     /// alpha of its moment of inertia alpha m r^2: 0.4 for a solid sphere, 2/3 for a thin shell. Without this key: 0.4.
     pub inertia: Option<f64>,
+    /// Its own drag coefficient, for drag = "ball" in [air].
+    pub drag: Option<f64>,
+    /// Its own coefficient of restitution, from 0 to 1, for restitution = "ball" in a material.
+    pub restitution: Option<f64>,
     /// Repeats the ball in a grid.
     pub grid: Option<GridTable>,
 }
@@ -266,7 +330,7 @@ pub struct MethodTable {
     pub integrator: Integrator,
     /// The time step in s of `euler`, `semi-implicit-euler` and `rk4`.
     pub step: Option<f64>,
-    /// The error that `adaptive` allows per step, relative to the size of the motion.
+    /// For `adaptive` the error allowed per step, relative to the size of the motion; for `auto` the largest error of a position, in m.
     pub tolerance: Option<f64>,
 }
 
@@ -284,4 +348,6 @@ pub enum Integrator {
     Rk4,
     /// Runge-Kutta of orders 5 and 4 that chooses its steps.
     Adaptive,
+    /// The cheapest of these that keeps positions right to `tolerance`, with its step: chosen before the run, by measuring, and said.
+    Auto,
 }

@@ -1,6 +1,7 @@
 //! Scene files: TOML or JSON into a scene, every fault with its place.
 
 mod air;
+mod balls;
 mod build;
 mod choices;
 mod de;
@@ -10,22 +11,34 @@ pub mod problem;
 mod shapes;
 mod tree;
 
-use crate::balls::{self, BallList};
+use crate::balls::{self as ball_lists, BallList};
+use crate::commands::accuracy::setting;
 use crate::error::AppError;
+use crate::terminal::say;
+use carom_dynamics::accuracy::choose;
 use carom_dynamics::error::SceneError;
+use carom_dynamics::explain::choice::{Choice, choose as choose_effects};
+use carom_dynamics::plan::Plan;
 use carom_dynamics::scene::Scene;
-use file::SceneFile;
+use file::{EffectsShare, EffectsTable, EffectsWord, SceneFile};
 use parse::Notation;
 use problem::Problem;
 use std::path::Path;
 use tree::{Node, Step};
 
+/// To what share effects are chosen if the scene does not say.
+const PERCENT: f64 = 0.01;
+
 /// A scene, and what it takes to say where in its file something is.
 pub struct Loaded {
     /// The scene.
     pub scene: Scene,
+    /// How its effects were chosen, if they were.
+    pub choice: Option<Choice>,
     source: Source,
     balls: BallOrigin,
+    /// The error in m for which the method is to be chosen, if it is.
+    auto: Option<f64>,
 }
 
 /// Where the balls of a scene were read.
@@ -104,20 +117,27 @@ pub fn load(path: &Path, balls: Option<&Path>) -> Result<Loaded, AppError> {
         Ok(file) => file,
         Err(problems) => return fail(text, problems),
     };
-    let mut builder = build::Builder { tree: &tree, problems: Vec::new() };
+    let mut builder = build::Builder { tree: &tree, problems: Vec::new(), auto: None };
     let folder = path.parent().unwrap_or(Path::new(""));
     let (mut scene, tables) = builder.scene(&file, folder);
-    let problems = builder.problems;
+    let (problems, auto) = (builder.problems, builder.auto);
     if !problems.is_empty() {
         return fail(text, problems);
     }
     let mut origin = BallOrigin::Tables(tables);
     if let Some(list) = balls {
-        let list = balls::read(list)?;
+        let list = ball_lists::read(list)?;
         scene.balls = list.balls.clone();
         origin = BallOrigin::List(list);
     }
-    Ok(Loaded { scene, source: Source { path: shown, text, tree }, balls: origin })
+    let loaded = Loaded { scene, choice: None, source: Source { path: shown, text, tree }, balls: origin, auto };
+    let tolerance = match file.effects {
+        None => return Ok(loaded),
+        Some(EffectsTable::Word(EffectsWord::Auto)) => PERCENT,
+        Some(EffectsTable::Share(EffectsShare { auto })) => auto,
+    };
+    let choice = choose_effects(&loaded.scene, tolerance).map_err(|error| loaded.refuse(&error))?;
+    Ok(Loaded { scene: choice.scene.clone(), choice: Some(choice), ..loaded })
 }
 
 /// The keys and types of a scene, or all that is wrong with them.
@@ -141,6 +161,22 @@ fn findings(path: &str, text: String, mut problems: Vec<Problem>) -> Findings {
 }
 
 impl Loaded {
+    /// The scene made ready. If its method is to be chosen, this chooses it, which takes runs of the first balls with every method, and says
+    /// which it is unless `quiet`.
+    pub fn plan(&self, quiet: bool) -> Result<Plan, AppError> {
+        let plan = |scene: &Scene| Plan::new(scene).map_err(|error| self.refuse(&error));
+        let Some(tolerance) = self.auto else { return plan(&self.scene) };
+        let chosen = choose(&self.scene, tolerance).map_err(|error| self.refuse(&error))?;
+        let Some((method, measurement)) = chosen else {
+            return Err(AppError::Target(format!("no integrator keeps positions right to {tolerance:e} m")));
+        };
+        if !quiet {
+            let error = measurement.errors.position;
+            say(&format!("integrator {}: off by {error:.1e} m at most", setting(&measurement)));
+        }
+        plan(&Scene { method: Some(method), ..self.scene.clone() })
+    }
+
     /// The error that a fault found in the whole scene makes, told at its place in the file.
     pub fn refuse(&self, error: &SceneError) -> AppError {
         let problem = Problem::new(error.to_string());
@@ -152,6 +188,12 @@ impl Loaded {
             }
             SceneError::NoExactFlight { .. } => path.extend([Step::Key("method"), Step::Key("integrator")]),
             SceneError::MassMissing { ball, .. } => return self.refuse_ball(*ball, None, problem),
+            SceneError::OwnMissing { ball, .. } => {
+                let help =
+                    "give it a name that the program knows, such as ball = \"tennis\", or `drag` and `restitution`";
+                return self.refuse_ball(*ball, None, problem.help(help));
+            }
+            SceneError::RadiusMissing { ball, .. } => return self.refuse_ball(*ball, None, problem),
             SceneError::RadiusBelowResolution { ball, .. } => return self.refuse_ball(*ball, Some("radius"), problem),
             SceneError::Ball { ball, source } => return self.refuse_ball(*ball, Some(source.name), problem),
             SceneError::Value(value) => path.push(Step::Key(value.name)),

@@ -195,7 +195,7 @@ impl SegmentData {
             }
             self.motion.0.push(match segment.motion {
                 Motion::Flying => 0,
-                Motion::Sliding => 1,
+                Motion::Sliding | Motion::Rolling => 1,
                 Motion::Resting => 2,
             });
         }

@@ -161,5 +161,14 @@ chooseBall(0);
 play(!calm.matches);
 requestAnimationFrame(frame);
 
+// A page can be opened at a moment and at a ball: run.html#t=1.5&ball=2&near=0.8
+const wish = new URLSearchParams(location.hash.slice(1));
+if (wish.has("ball")) chooseBall(Math.round(Number(wish.get("ball"))) || 0);
+if (wish.has("near")) camera.zoom(Number(wish.get("near")) || 1);
+if (wish.has("t")) {
+  play(false);
+  seek(Number(wish.get("t")) || 0);
+}
+
 // A handle for scripts and for the console.
 window.carom = { run, state, camera, seek, play, chooseBall, chooseEvent, follow, draw };

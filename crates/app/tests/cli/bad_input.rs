@@ -130,7 +130,16 @@ scenes! {
     spin_decay_of_no_time: "[air]" => "[air]\nspin_decay = 0";
     restitution_that_falls_above_nothing: "restitution = 0.75" => "restitution = { coefficient = 0.75, falls_above = 0 }";
     restitution_with_a_misspelt_key: "restitution = 0.75" => "restitution = { coefficient = 0.75, fals_above = 1 }";
-    restitution_in_words: "restitution = 0.75" => "restitution = \"high\"";
+    unknown_ball: "radius = 0.033" => "ball = \"tenis\"";
+    drag_of_a_ball_that_has_none: "{ linear = 0.05 }" => "\"ball\"\ndensity = 1.2";
+    restitution_of_a_ball_that_has_none: "restitution = 0.75" => "restitution = \"ball\"";
+    restitution_of_what: "restitution = 0.75" => "restitution = \"bell\"";
+    negative_drag_of_a_ball: "mass = 0.058" => "mass = 0.058\ndrag = -0.5";
+    negative_grip: "coulomb = 0.6" => "grip = { mu = -0.6 }";
+    tangential_above_1: "coulomb = 0.6" => "grip = { mu = 0.6, tangential = 1.5 }";
+    negative_rolling: "coulomb = 0.6" => "grip = { mu = 0.6, rolling = -0.1 }";
+    unknown_effects: "[air]" => "effects = \"all\"\n[air]";
+    effects_to_nothing: "[air]" => "effects = { auto = 0 }\n[air]";
     inertia_above_1: "mass = 0.058" => "mass = 0.058\ninertia = 1.2";
     unknown_material: "material = \"clay\"" => "material = \"caly\"";
     surface_without_material: "material = \"clay\"" => "";

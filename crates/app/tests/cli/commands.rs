@@ -6,7 +6,23 @@ use crate::common::{Folder, shown};
 fn help_of_every_command() {
     let folder = Folder::with(&[]);
     insta::assert_snapshot!("help", shown(&folder.run(&["--help"])));
-    for command in ["run", "view", "check", "schema", "materials", "completions"] {
+    let commands = [
+        "init",
+        "run",
+        "accuracy",
+        "view",
+        "plot",
+        "export",
+        "explain",
+        "check",
+        "compare",
+        "schema",
+        "balls",
+        "materials",
+        "completions",
+        "man",
+    ];
+    for command in commands {
         insta::assert_snapshot!(format!("help_{command}"), shown(&folder.run(&[command, "--help"])));
     }
 }
@@ -27,6 +43,14 @@ fn usage_errors_are_2() {
         &["run", "scene.toml", "--events", "-", "--frames", "-"],
         &["run", "scene.toml", "--events", "x.csv", "--frames", "x.csv"],
         &["check", "scene.xyz"],
+        &["view", "scene.toml"],
+        &["export", "scene.toml", "-o", "x.obj"],
+        &["export", "scene.toml", "-o", "x.glb", "--keys", "all"],
+        &["export", "scene.toml", "-o", "x.glb", "--keys", "fps=0"],
+        &["plot", "scene.toml", "-o", "x.svg", "--show", "colour"],
+        &["init", "scene.toml"],
+        &["accuracy", "scene.toml", "--target-error", "0"],
+        &["accuracy", "scene.toml", "--csv", "-", "--plot", "-"],
         &["completions", "csh"],
     ] {
         let output = folder.run(args);

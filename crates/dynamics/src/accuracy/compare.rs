@@ -11,7 +11,7 @@ use crate::scene::Scene;
 pub struct Errors {
     /// Distance of the positions at the sample times, in m; infinite if the run ended early.
     pub position: f64,
-    /// The same before the first impact, in m.
+    /// The same at one time before the first impact, in m: the last at which every step of the sweep ends.
     pub flight: f64,
     /// Of the times of impacts that are in both, in s; none if there is no such impact.
     pub impact_time: Option<f64>,
@@ -41,6 +41,15 @@ pub struct Shares {
     pub rounding: f64,
 }
 
+/// When positions are compared, in s.
+#[derive(Debug, Clone)]
+pub struct Times {
+    /// All of them, ascending.
+    pub all: Vec<f64>,
+    /// The one that stands for the first flight.
+    pub flight: f64,
+}
+
 /// A reference with the time up to which it can be compared with.
 #[derive(Debug, Clone)]
 pub struct Compared {
@@ -67,7 +76,7 @@ impl Errors {
     }
 
     /// The errors of `records` against `references`, ball by ball.
-    pub fn of(scene: &Scene, times: &[f64], records: &[Record], references: &[Compared]) -> Self {
+    pub fn of(scene: &Scene, times: &Times, records: &[Record], references: &[Compared]) -> Self {
         let mut errors = Self::none();
         for (record, reference) in records.iter().zip(references) {
             errors.add(scene, times, record, reference);
@@ -75,22 +84,28 @@ impl Errors {
         errors
     }
 
-    fn add(&mut self, scene: &Scene, times: &[f64], record: &Record, reference: &Compared) {
+    fn add(&mut self, scene: &Scene, times: &Times, record: &Record, reference: &Compared) {
+        let Times { all: times, flight } = times;
+        let flight = *flight;
         let count = times.iter().take_while(|t| **t <= reference.until).count().min(reference.course.samples.len());
         if record.samples.len() < count {
             self.position = f64::INFINITY;
         }
-        let first = reference.course.impacts.first().map_or(f64::INFINITY, |impact| impact.time.to_f64());
+        let before = |t: f64| {
+            let exact = reference.course.impacts.iter().filter(|impact| impact.time.to_f64() <= t).count();
+            exact == record.impacts.iter().filter(|(time, _)| *time <= t).count()
+        };
         let fastest = reference.course.samples.iter().map(|s| rounded(&s[1]).norm_squared()).fold(0.0, f64::max);
         let pairs = times.iter().zip(&record.samples).zip(&reference.course.samples).take(count);
         for ((time, sample), [x, v]) in pairs {
             let off = norm(&sub(&point(&sample.position), x)).to_f64();
             self.position = self.position.max(off);
-            if *time < first {
+            if *time == flight {
                 self.flight = self.flight.max(off);
             }
             let exact = State { position: rounded(x).into(), velocity: rounded(v) };
-            if fastest > 0.0 {
+            // Between an impact of the one and that of the other the energies have nothing to do with each other.
+            if fastest > 0.0 && before(*time) {
                 let off = (energy(scene, sample) - energy(scene, &exact)).abs() / (0.5 * fastest);
                 self.energy = self.energy.max(off);
             }
@@ -161,7 +176,7 @@ pub struct EulerLaws {
 impl EulerLaws {
     /// Of the first flight of `record` with the step `h` (s); none without gravity, with air, or if the flight is shorter than a step.
     pub fn of(scene: &Scene, record: &Record, h: f64, first_impact: Option<f64>) -> Option<Self> {
-        let g = scene.gravity.filter(|_| scene.drag.is_none())?.acceleration();
+        let g = scene.gravity.filter(|_| only_gravity(scene))?.acceleration();
         let start = scene.balls.first()?.start();
         let (time, end, steps) = record.flight?;
         let strength = g.norm();
@@ -183,6 +198,11 @@ impl EulerLaws {
             late: first_impact.map(|late| late / (0.5 * h)),
         })
     }
+}
+
+/// Whether nothing but gravity acts in flight.
+pub fn only_gravity(scene: &Scene) -> bool {
+    scene.drag.is_none() && scene.magnus.is_none() && scene.buoyancy.is_none()
 }
 
 /// Where balls are after all: what still means something when positions do not.

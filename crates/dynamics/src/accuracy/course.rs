@@ -64,22 +64,20 @@ pub struct Course {
 pub struct Setting<'a> {
     /// The plan, of which only the input is read.
     pub plan: &'a Plan,
-    /// Air resistance.
-    pub drag: Option<crate::effects::drag::Drag>,
     /// The surfaces.
     pub world: &'a World,
     /// When to look, in s, ascending.
     pub times: &'a [f64],
 }
 
-/// Follows `ball`, its start moved by `shift` (m).
-pub fn follow(setting: &Setting, ball: &Ball, shift: &Vector) -> Course {
+/// Follows `ball` in its `field`, its start moved by `shift` (m).
+pub fn follow(setting: &Setting, ball: &Ball, field: &Field, shift: &Vector) -> Course {
     let plan = setting.plan;
     let start = ball.start();
-    let field = Field::new(&plan.constant, setting.drag.as_ref(), ball.radius(), ball.mass());
     let mut walker = Walker {
         setting,
-        field,
+        ball,
+        field: field.clone(),
         planes: setting.world.planes(&start.position, &start.velocity),
         radius: Real::from(ball.radius()),
         face_radius: Real::from(ball.radius().max(plan.point_radius)),
@@ -97,6 +95,7 @@ pub fn follow(setting: &Setting, ball: &Ball, shift: &Vector) -> Course {
 
 struct Walker<'a> {
     setting: &'a Setting<'a>,
+    ball: &'a Ball,
     field: Field,
     planes: Vec<(usize, Obstacle)>,
     radius: Real,
@@ -124,7 +123,7 @@ impl Walker<'_> {
                 return Reach::Complete;
             }
             // Rounded up: what is left is less than the rounding of an f64.
-            let flight = self.field.fly(&self.x, &self.v, remaining.to_f64().next_up());
+            let flight = self.field.fly(&self.x, &self.v, &self.t, remaining.to_f64().next_up());
             match self.arrival(&flight) {
                 Arrival::Nothing => self.travel(&flight, &Real::from(flight.seconds)),
                 Arrival::Undecided(t) => {
@@ -234,8 +233,9 @@ impl Walker<'_> {
         touched
     }
 
-    fn material(&self, surface: usize) -> &Material {
-        &self.setting.plan.surfaces[surface].material
+    fn material(&self, surface: usize) -> Material {
+        let material = self.setting.plan.surfaces[surface].material;
+        Material { restitution: material.restitution.for_ball(self.ball), ..material }
     }
 
     /// The chapter's response; says why the course ends, if it does.
@@ -245,11 +245,12 @@ impl Walker<'_> {
         let (Some((surface, n, rate)), None) = (closing.next(), closing.next()) else {
             return Some(Reach::Simultaneous);
         };
-        let material = *self.material(*surface);
+        let material = self.material(*surface);
         self.course.impacts.push(Impact { time: self.t.clone(), surface: *surface });
         let speed = -rate;
-        let v_t = slow(&material.friction, &sub(&self.v, &scale(n, rate)), &speed, &material);
-        let rebound = &speed * &Real::from(material.restitution.coefficient());
+        let v_t = slow(&material.friction, &sub(&self.v, &scale(n, rate)), &speed, &restitution(&material, &speed));
+        let c_r = restitution(&material, &speed);
+        let rebound = &speed * &c_r;
         self.v = add(&v_t, &scale(n, &rebound));
         if touched.iter().any(|(_, other, _)| dot(other, &self.v) < -(&self.touch)) {
             return Some(Reach::Simultaneous);
@@ -258,7 +259,7 @@ impl Walker<'_> {
             return Some(Reach::Budget);
         }
         // Hops below the last digits of f64 are summed.
-        let pressed = -dot(n, &self.field.acceleration(&self.v));
+        let pressed = -dot(n, &self.field.acceleration(&self.v, &self.t));
         let hop = &(&rebound * &rebound) / &(&pressed + &pressed);
         let tiny = Real::from(self.setting.plan.farthest * 2f64.powi(-64));
         let ends = pressed > Real::zero() && material.restitution.coefficient() < 1.0 && hop <= tiny;
@@ -269,10 +270,10 @@ impl Walker<'_> {
     fn last(&mut self) -> Reach {
         let touched = self.touched();
         let [(surface, n, rate)] = touched.as_slice() else { return Reach::Simultaneous };
-        let material = *self.material(*surface);
+        let material = self.material(*surface);
         let on_plane = self.planes.iter().any(|(s, _)| s == surface);
         let duration = Real::from(self.setting.plan.duration);
-        let settled = settle(&self.field, n, rate, &material, &self.v, &(&duration - &self.t), on_plane);
+        let settled = settle(&self.field, n, rate, &material, &self.v, &self.t, &(&duration - &self.t), on_plane);
         let Settled { pieces, rest, complete } = settled;
         for (acceleration, velocity, seconds) in pieces {
             let half = scale(&acceleration, &Real::from(0.5));
@@ -290,8 +291,17 @@ impl Walker<'_> {
     }
 }
 
+/// c_r at a closing speed.
+fn restitution(material: &Material, closing: &Real) -> Real {
+    let c_r = Real::from(material.restitution.coefficient());
+    match material.restitution.falls_above().map(Real::from) {
+        Some(above) if *closing > above => &c_r * &(&above / closing).sqrt().sqrt(),
+        _ => c_r,
+    }
+}
+
 /// v_t after an impact or a series of them with the closing speed `closing` (m/s) in all.
-pub fn slow(friction: &Friction, v_t: &Vector, closing: &Real, material: &Material) -> Vector {
+pub fn slow(friction: &Friction, v_t: &Vector, closing: &Real, c_r: &Real) -> Vector {
     let less = |amount: &Real| {
         let speed = norm(v_t);
         if speed <= *amount {
@@ -300,11 +310,12 @@ pub fn slow(friction: &Friction, v_t: &Vector, closing: &Real, material: &Materi
         scale(v_t, &(&(&speed - amount) / &speed))
     };
     match friction {
-        Friction::None => v_t.clone(),
+        // What grips has no reference of this kind: see Field::of.
+        Friction::None | Friction::Grip(_) => v_t.clone(),
         Friction::Linear(c_f) => scale(v_t, &(Real::from(1.0) - Real::from(c_f.get()))),
         Friction::Coulomb(mu) => less(&(&Real::from(mu.get()) * closing)),
         Friction::Impulse(mu) => {
-            let one_and_c_r = Real::from(1.0) + Real::from(material.restitution.coefficient());
+            let one_and_c_r = &Real::from(1.0) + c_r;
             less(&(&(&Real::from(mu.get()) * &one_and_c_r) * closing))
         }
     }

@@ -5,11 +5,12 @@ use std::fmt;
 /// Points that a line needs.
 const LEAST_POINTS: usize = 4;
 
-/// Points at the fine end that are taken: the order is what is left when the step goes to 0.
+/// Points at the fine end that are taken: the order is what is left when the step goes to 0. Of steps that a method chooses by itself, which
+/// jump, all.
 const MOST_POINTS: usize = 5;
 
-/// How far the points may scatter about their line, in octaves.
-const SCATTER: f64 = 0.25;
+/// How far the points may scatter about their line, in octaves: with steps that are given, and with a method's own.
+const SCATTER: [f64; 2] = [0.25, 2.0];
 
 /// An error this many times that of rounding is the method's.
 const ABOVE_ROUNDING: f64 = 64.0;
@@ -25,7 +26,12 @@ pub enum Order {
     TooFew,
     /// The points lie on no line.
     Scattered,
+    /// A smaller step does not make a smaller error.
+    NotConverging,
 }
+
+/// A slope below this is none.
+const LEAST_SLOPE: f64 = 0.25;
 
 impl Order {
     /// The slope, if there is one.
@@ -44,12 +50,14 @@ impl fmt::Display for Order {
             Self::AtRounding => f.write_str("rounding"),
             Self::TooFew => f.write_str("too few"),
             Self::Scattered => f.write_str("scattered"),
+            Self::NotConverging => f.write_str("none"),
         }
     }
 }
 
-/// Fits the order through points (step, error, what rounding makes of it), the errors that mean nothing being infinite.
-pub fn order(points: &[(f64, f64, f64)]) -> Order {
+/// Fits the order through points (step, error, what rounding makes of it), the errors that mean nothing being infinite; whether the steps were
+/// `given`, or are the method's own.
+pub fn order(points: &[(f64, f64, f64)], given: bool) -> Order {
     let comparable: Vec<_> = points.iter().filter(|(h, e, _)| *h > 0.0 && e.is_finite()).collect();
     let mut usable: Vec<(f64, f64)> = comparable
         .iter()
@@ -60,7 +68,9 @@ pub fn order(points: &[(f64, f64, f64)]) -> Order {
         return if comparable.len() >= LEAST_POINTS { Order::AtRounding } else { Order::TooFew };
     }
     usable.sort_by(|a, b| a.0.total_cmp(&b.0));
-    usable.truncate(MOST_POINTS);
+    if given {
+        usable.truncate(MOST_POINTS);
+    }
     let n = usable.len() as f64;
     let mean = usable.iter().fold((0.0, 0.0), |sum, p| (sum.0 + p.0 / n, sum.1 + p.1 / n));
     let (mut xx, mut xy) = (0.0, 0.0);
@@ -73,7 +83,11 @@ pub fn order(points: &[(f64, f64, f64)]) -> Order {
     }
     let slope = xy / xx;
     let scatter = usable.iter().map(|(x, y)| (y - mean.1 - slope * (x - mean.0)).abs()).fold(0.0, f64::max);
-    if scatter <= SCATTER { Order::Fitted(slope) } else { Order::Scattered }
+    match slope {
+        slope if slope < LEAST_SLOPE => Order::NotConverging,
+        slope if scatter <= SCATTER[usize::from(!given)] => Order::Fitted(slope),
+        _ => Order::Scattered,
+    }
 }
 
 #[cfg(test)]
@@ -88,20 +102,20 @@ mod tests {
     #[test]
     fn an_order_is_the_slope_at_the_fine_end_above_rounding() {
         for p in [1, 2, 4, 5] {
-            let fitted = order(&powers(p, 2f64.powi(-50))).value().unwrap();
+            let fitted = order(&powers(p, 2f64.powi(-50)), true).value().unwrap();
             assert!((fitted - f64::from(p)).abs() < 0.05, "{p}: {fitted}");
         }
     }
 
     #[test]
     fn what_is_no_line_gets_none() {
-        assert_eq!(order(&powers(4, 1.0)).value(), Some(0.0));
-        assert_eq!(order(&powers(9, 2f64.powi(-50))[5..]), Order::AtRounding);
-        assert_eq!(order(&powers(1, 0.0)[..1]), Order::TooFew);
+        assert_eq!(order(&powers(4, 1.0), true), Order::NotConverging);
+        assert_eq!(order(&powers(9, 2f64.powi(-50))[5..], true), Order::AtRounding);
+        assert_eq!(order(&powers(1, 0.0)[..1], true), Order::TooFew);
         let mut wild = powers(1, 0.0);
         wild[6].1 *= 8.0;
-        assert_eq!(order(&wild), Order::Scattered);
+        assert_eq!(order(&wild, true), Order::Scattered);
         wild.iter_mut().for_each(|p| p.1 = f64::INFINITY);
-        assert_eq!(order(&wild), Order::TooFew);
+        assert_eq!(order(&wild, true), Order::TooFew);
     }
 }

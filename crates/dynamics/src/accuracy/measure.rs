@@ -1,34 +1,16 @@
-//! The measurement: references, runs of every method over its sweep, their errors, and their times.
+//! The measurement: references, runs of every method over its sweep, their errors, and their times; and the choice that follows.
 
-use super::compare::{Compared, Ends, Errors, EulerLaws, Shares, distance, growth, reference_error};
-use super::course::{Course, Reach, Setting, follow};
-use super::fit::order;
-use super::real::{Real, rounded};
-use super::record::{Record, Recorder};
-use super::report::{Cost, Measurement, ReferenceKind, Remark, Report, Sweep, work};
-use super::textbook::simulate_textbook;
-use super::variant::{Approach, Parameter, Variant};
+use super::candidate::{time, times};
+use super::compare::{Compared, reference_error};
+use super::course::{Course, Reach};
+use super::record::Record;
+use super::report::{Measurement, Remark, Report};
+use super::stage::Stage;
+use super::variant::Variant;
 use super::world::World;
-use crate::body::{Ball, State};
-use crate::counters::Counters;
 use crate::error::SceneError;
-use crate::events::{Motion, Outcome};
-use crate::observer::Observer;
 use crate::plan::Plan;
 use crate::scene::{Method, Scene};
-use crate::simulate::simulate;
-
-/// Times at which positions are compared.
-const SAMPLES: u32 = 64;
-
-/// Growth of small differences beyond which positions say nothing.
-const GROWTH_LIMIT: f64 = 1000.0;
-
-/// Steps that the first flight is divided into at the coarse end of a sweep, at least.
-const COARSE_STEPS: f64 = 8.0;
-
-/// The least time by the clock that a repeat takes, in s, so that the clock can tell it.
-const LEAST_REPEAT: f64 = 1.0 / 8192.0;
 
 /// How much is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -43,28 +25,13 @@ pub struct Effort {
     pub repeats: u32,
     /// Which methods.
     pub variants: &'static [Variant],
+    /// Whether meshes are refined to see what their discretisation costs.
+    pub resolutions: bool,
 }
 
 impl Default for Effort {
     fn default() -> Self {
-        Self { balls: 4, octaves: 8, decades: 10, repeats: 5, variants: &Variant::ALL }
-    }
-}
-
-/// A method made ready.
-struct Candidate {
-    variant: Variant,
-    value: f64,
-    approach: Approach,
-    plan: Plan,
-}
-
-impl Candidate {
-    fn run(&self, ball: &Ball, observer: &mut impl Observer) -> Outcome {
-        match &self.approach {
-            Approach::Textbook(textbook) => simulate_textbook(&self.plan, textbook, ball, observer),
-            Approach::Method(_) => simulate(&self.plan, ball, observer),
-        }
+        Self { balls: 4, octaves: 8, decades: 10, repeats: 5, variants: &Variant::ALL, resolutions: true }
     }
 }
 
@@ -76,14 +43,14 @@ pub fn measure(scene: &Scene, effort: &Effort, clock: &mut dyn FnMut() -> f64) -
     let scene = Scene { balls, method: None, ..scene.clone() };
     let plan = Plan::new(&scene)?;
     let world = World::new(&plan);
-    let times: Vec<f64> = (1..=SAMPLES).map(|k| scene.duration * (f64::from(k) / f64::from(SAMPLES))).collect();
+    let (times, coarse) = times(&plan);
     let mut stage = Stage { scene: &scene, plan: &plan, world: &world, times: &times, remarks: Vec::new() };
     if all > scene.balls.len() {
         stage.remarks.push(Remark::SomeBalls { followed: scene.balls.len(), of: all });
     }
-    let (references, growth) = stage.references();
+    let (references, growth, reference) = stage.references()?;
     let impacts = references.iter().map(|r| count(&r.course, r.until)).sum();
-    let candidates = stage.candidates(effort, &references)?;
+    let candidates = stage.candidates(effort, coarse)?;
     let mut measured: Vec<Measurement> = Vec::new();
     let mut twins: Vec<(Variant, f64, Vec<Record>)> = Vec::new();
     for candidate in &candidates {
@@ -91,17 +58,14 @@ pub fn measure(scene: &Scene, effort: &Effort, clock: &mut dyn FnMut() -> f64) -
         measured.push(stage.judge(candidate, &records, &references, &mut twins)?);
     }
     time(&candidates, &scene, effort.repeats, clock, &mut measured);
-    let fits = impacts > 0 && comparable(&references, &times) > 0;
+    let fits = impacts > 0 && comparable(&references, &times.all) > 0;
     let sweeps = stage.sweeps(measured, effort, fits);
-    stage.conclude(&sweeps, impacts, comparable(&references, &times));
+    stage.conclude(&sweeps, impacts, comparable(&references, &times.all));
+    let resolutions = if effort.resolutions { stage.resolutions(&references)? } else { Vec::new() };
     let until = references.iter().map(|r| r.until).fold(scene.duration, f64::min);
     let complete = references.iter().all(|r| r.course.reach == Reach::Complete);
     Ok(Report {
-        reference: if scene.drag.is_none() && !world.has_faces() {
-            ReferenceKind::ClosedForm
-        } else {
-            ReferenceKind::Extended
-        },
+        reference,
         reference_error: reference_error(plan.farthest, growth),
         balls: scene.balls.len(),
         until,
@@ -109,6 +73,7 @@ pub fn measure(scene: &Scene, effort: &Effort, clock: &mut dyn FnMut() -> f64) -
         impacts,
         ends: complete.then(|| stage.reference_ends(&references)),
         sweeps,
+        resolutions,
         remarks: stage.remarks,
     })
 }
@@ -123,259 +88,6 @@ fn comparable(references: &[Compared], times: &[f64]) -> usize {
     references.iter().map(|r| times.iter().filter(|t| **t <= r.until).count()).sum()
 }
 
-/// A scene with what is needed to judge runs of it.
-struct Stage<'a> {
-    scene: &'a Scene,
-    plan: &'a Plan,
-    world: &'a World,
-    times: &'a [f64],
-    remarks: Vec<Remark>,
-}
-
-impl Stage<'_> {
-    /// The reference of each ball, and the worst growth of small differences while it can be compared.
-    fn references(&mut self) -> (Vec<Compared>, f64) {
-        let setting = Setting { plan: self.plan, drag: self.scene.drag, world: self.world, times: self.times };
-        let size = self.plan.farthest.max(f64::MIN_POSITIVE);
-        let shift = size * 2f64.powi(-70);
-        let none = [Real::zero(), Real::zero(), Real::zero()];
-        let some = [Real::from(shift * 0.5), Real::from(shift * 0.5), Real::from(shift * 0.5f64.sqrt())];
-        let mut worst = 1.0_f64;
-        let mut references = Vec::new();
-        for (ball, start) in self.scene.balls.iter().enumerate() {
-            let course = follow(&setting, start, &none);
-            let moved = follow(&setting, start, &some);
-            let growth = growth(&course, &moved, shift);
-            let chaotic = growth.iter().position(|g| *g > GROWTH_LIMIT);
-            let from = chaotic.map(|k| self.times[k]);
-            if let Some(from) = from {
-                self.remarks.push(Remark::Chaotic { ball, from });
-            }
-            if course.reach != Reach::Complete {
-                self.remarks.push(Remark::ReferenceEnds { ball, at: course.until, reach: course.reach });
-            }
-            // Up to the sample before.
-            let until = chaotic.map_or(course.until, |k| k.checked_sub(1).map_or(0.0, |k| self.times[k]));
-            let known = growth.iter().take(chaotic.unwrap_or(growth.len()));
-            worst = known.fold(worst, |worst, g| worst.max(*g));
-            references.push(Compared { until: until.min(course.until), course });
-        }
-        (references, worst)
-    }
-
-    /// Every method with every step or tolerance of its sweep, the coarse ones first.
-    fn candidates(&mut self, effort: &Effort, references: &[Compared]) -> Result<Vec<Candidate>, SceneError> {
-        let first = references.iter().filter_map(|r| r.course.impacts.first()).map(|i| i.time.to_f64());
-        let first = first.filter(|t| *t > 0.0).fold(self.scene.duration, f64::min);
-        let coarse = 2f64.powf((first / COARSE_STEPS).log2().floor());
-        let mut candidates = Vec::new();
-        for &variant in effort.variants {
-            let values: Vec<f64> = match variant.parameter() {
-                Parameter::Step => (0..=effort.octaves).map(|k| coarse / 2f64.powi(k as i32)).collect(),
-                Parameter::Tolerance => (0..=effort.decades).map(|k| 10f64.powi(-3 - k as i32)).collect(),
-                Parameter::None => vec![0.0],
-            };
-            for value in values {
-                let approach = variant.with(value);
-                let method = match approach {
-                    Approach::Method(method) => Some(method),
-                    Approach::Textbook(_) => None,
-                };
-                match Plan::new(&Scene { method, ..self.scene.clone() }) {
-                    Ok(plan) => candidates.push(Candidate { variant, value, approach, plan }),
-                    Err(SceneError::NoExactFlight { .. }) => self.remarks.push(Remark::NoExactFlight),
-                    Err(error) => return Err(error),
-                }
-            }
-        }
-        Ok(candidates)
-    }
-
-    fn run(&self, candidate: &Candidate) -> Vec<Record> {
-        let one = |ball: &Ball| {
-            let mut recorder = Recorder::new(&candidate.plan, self.world, self.times, ball);
-            let outcome = candidate.run(ball, &mut recorder);
-            recorder.finish(outcome)
-        };
-        self.scene.balls.iter().map(one).collect()
-    }
-
-    /// The same run from starts that are an ulp away.
-    fn run_beside(&self, candidate: &Candidate) -> Vec<Record> {
-        let one = |ball: &Ball| {
-            let start = ball.start();
-            let least = self.plan.farthest * f64::EPSILON;
-            let next = start.position.map(|x| if x == 0.0 { least } else { x.next_up() });
-            let Ok(moved) = Ball::new(next, start.velocity, ball.radius(), ball.mass()) else { return *ball };
-            moved
-        };
-        let beside = Scene { balls: self.scene.balls.iter().map(one).collect(), ..self.scene.clone() };
-        Stage { scene: &beside, plan: self.plan, world: self.world, times: self.times, remarks: Vec::new() }
-            .run(candidate)
-    }
-
-    fn judge(
-        &self,
-        candidate: &Candidate,
-        records: &[Record],
-        references: &[Compared],
-        twins: &mut Vec<(Variant, f64, Vec<Record>)>,
-    ) -> Result<Measurement, SceneError> {
-        let Candidate { variant, value, .. } = *candidate;
-        let errors = Errors::of(self.scene, self.times, records, references);
-        let rounding = distance(self.times, records, &self.run_beside(candidate), references);
-        let twin = variant.twin();
-        let (integration, determination) = if twin == variant {
-            (errors.position, errors.off_touch)
-        } else {
-            let certified = self.twin(twin, value, twins)?;
-            let error = Errors::of(self.scene, self.times, certified, references).position;
-            (error, distance(self.times, records, certified, references))
-        };
-        let integration = if integration > 4.0 * rounding { integration } else { 0.0 };
-        let outcomes = || records.iter().filter_map(|r| r.outcome);
-        let counters = outcomes().fold(Counters::default(), |mut sum, o| {
-            sum += o.counters;
-            sum
-        });
-        let seconds = self.scene.duration * records.len() as f64;
-        let states: Vec<State> = outcomes().map(|o| o.state).collect();
-        let resting = outcomes().filter(|o| o.motion == Motion::Resting).count();
-        let impacts = records.iter().map(|r| r.impacts.len()).sum();
-        let euler = matches!(variant, Variant::Slides | Variant::SlidesOwnF | Variant::Euler);
-        let laws = records.first().filter(|_| euler);
-        Ok(Measurement {
-            variant,
-            value,
-            mean_step: seconds / counters.paths.max(1) as f64,
-            errors,
-            shares: Shares { integration, determination, rounding },
-            laws: laws.and_then(|record| EulerLaws::of(self.scene, record, value, errors.first_impact)),
-            ends: Ends::of(self.scene, &states, impacts, resting),
-            counters,
-            work: work(&counters) / seconds,
-            cost: None,
-        })
-    }
-
-    /// The run with certified collisions, made once for each step.
-    fn twin<'t>(
-        &self,
-        variant: Variant,
-        value: f64,
-        twins: &'t mut Vec<(Variant, f64, Vec<Record>)>,
-    ) -> Result<&'t [Record], SceneError> {
-        let known = twins.iter().position(|(v, x, _)| *v == variant && *x == value);
-        let known = match known {
-            Some(known) => known,
-            None => {
-                let approach = variant.with(value);
-                let method = match approach {
-                    Approach::Method(method) => Some(method),
-                    Approach::Textbook(_) => None,
-                };
-                let plan = Plan::new(&Scene { method, ..self.scene.clone() })?;
-                let records = self.run(&Candidate { variant, value, approach, plan });
-                twins.push((variant, value, records));
-                twins.len() - 1
-            }
-        };
-        Ok(&twins[known].2)
-    }
-
-    /// The measurements by method, with their orders.
-    fn sweeps(&self, measured: Vec<Measurement>, effort: &Effort, fits: bool) -> Vec<Sweep> {
-        let mut sweeps = Vec::new();
-        for &variant in effort.variants {
-            let measurements: Vec<_> = measured.iter().filter(|m| m.variant == variant).cloned().collect();
-            if measurements.is_empty() {
-                continue;
-            }
-            let size = |m: &Measurement| if variant.parameter() == Parameter::Step { m.value } else { m.mean_step };
-            let fit = |error: fn(&Errors) -> f64| {
-                let points: Vec<_> =
-                    measurements.iter().map(|m| (size(m), error(&m.errors), m.shares.rounding)).collect();
-                order(if fits { &points } else { &[] })
-            };
-            let (flight_order, order) = (fit(|e| e.flight), fit(|e| e.position));
-            sweeps.push(Sweep { variant, measurements, flight_order, order });
-        }
-        sweeps
-    }
-
-    /// What the numbers mean.
-    fn conclude(&mut self, sweeps: &[Sweep], impacts: usize, comparable: usize) {
-        if comparable == 0 {
-            self.remarks.push(Remark::NothingToCompare);
-        } else if impacts == 0 {
-            self.remarks.push(Remark::NoImpacts);
-        }
-        for sweep in sweeps {
-            let variant = sweep.variant;
-            let whole = sweep.order.value();
-            let higher = variant.textbook_orders().is_some_and(|[flight, _]| flight > 1);
-            if higher && self.scene.drag.is_none() && comparable > 0 && impacts > 0 {
-                self.remarks.push(Remark::ExactFlights(variant));
-            }
-            if let (Some(flight), Some(order)) = (sweep.flight_order.value(), whole)
-                && order < flight - 0.1
-            {
-                self.remarks.push(Remark::LoweredByBounces { variant, flight, order });
-            }
-            let radius = self.scene.balls.iter().map(Ball::radius).fold(self.plan.farthest * 2f64.powi(-10), f64::max);
-            let runs = sweep.measurements.iter().filter(|m| m.errors.penetration > radius).count();
-            if runs > 0 {
-                self.remarks.push(Remark::Through { variant, runs });
-            }
-        }
-    }
-
-    fn reference_ends(&self, references: &[Compared]) -> Ends {
-        let last = references.iter().filter_map(|r| r.course.samples.last());
-        let states: Vec<State> =
-            last.map(|[x, v]| State { position: rounded(x).into(), velocity: rounded(v) }).collect();
-        let impacts = references.iter().map(|r| r.course.impacts.len()).sum();
-        let resting = references.iter().filter(|r| r.course.rest.is_some()).count();
-        Ends::of(self.scene, &states, impacts, resting)
-    }
-}
-
-/// Times the candidates: in turn, `repeats` times over, the quickest of each.
-fn time(
-    candidates: &[Candidate],
-    scene: &Scene,
-    repeats: u32,
-    clock: &mut dyn FnMut() -> f64,
-    measured: &mut [Measurement],
-) {
-    let mut best = vec![f64::INFINITY; candidates.len()];
-    let mut rounds = vec![1_u32; candidates.len()];
-    for _ in 0..repeats {
-        for (k, candidate) in candidates.iter().enumerate() {
-            loop {
-                let start = clock();
-                for _ in 0..rounds[k] {
-                    for ball in &scene.balls {
-                        candidate.run(ball, &mut ());
-                    }
-                }
-                let taken = clock() - start;
-                best[k] = best[k].min(taken / f64::from(rounds[k]));
-                if taken >= LEAST_REPEAT || rounds[k] >= 4096 || taken < 0.0 {
-                    break;
-                }
-                rounds[k] *= 4;
-            }
-        }
-    }
-    let seconds = scene.duration * scene.balls.len() as f64;
-    for (m, best) in measured.iter_mut().zip(best).filter(|(_, best)| best.is_finite()) {
-        let impacts = m.counters.impacts;
-        let per_impact = (impacts > 0).then(|| best * 1e9 / impacts as f64);
-        m.cost = Some(Cost { per_second: best * 1e9 / seconds, per_impact });
-    }
-}
-
 /// The methods that a scene can ask for.
 const OFFERED: [Variant; 5] =
     [Variant::Euler, Variant::SemiImplicitEuler, Variant::Rk4, Variant::Adaptive, Variant::Exact];
@@ -385,7 +97,7 @@ const OFFERED: [Variant; 5] =
 ///
 /// It looks at work counts and not at the clock, so that the same scene gets the same method on every machine.
 pub fn choose(scene: &Scene, tolerance: f64) -> Result<Option<(Method, Measurement)>, SceneError> {
-    let effort = Effort { repeats: 0, variants: &OFFERED, ..Effort::default() };
+    let effort = Effort { repeats: 0, variants: &OFFERED, resolutions: false, ..Effort::default() };
     let report = measure(scene, &effort, &mut || 0.0)?;
     let best = report.cheapest(tolerance);
     Ok(best.and_then(|m| Some((m.method()?, m.clone()))))

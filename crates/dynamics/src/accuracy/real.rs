@@ -39,6 +39,11 @@ impl Real {
         if *self > Self::zero() { Self(self.0.sqrt()) } else { Self::zero() }
     }
 
+    /// e to its power.
+    pub fn exp(&self) -> Self {
+        Self(self.0.exp())
+    }
+
     /// Whether it is 0.
     pub fn is_zero(&self) -> bool {
         self.0 == FBig::<HalfEven, 2>::ZERO

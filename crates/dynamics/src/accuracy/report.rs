@@ -3,6 +3,7 @@
 use super::compare::{Ends, Errors, EulerLaws, Shares};
 use super::course::Reach;
 use super::fit::Order;
+use super::resolution::Original;
 use super::variant::{Approach, Variant};
 use crate::counters::Counters;
 use crate::scene::Method;
@@ -15,14 +16,20 @@ pub enum ReferenceKind {
     ClosedForm,
     /// The same physics in 128 bits: Taylor series, and every surface on its own.
     Extended,
+    /// This crate's own adaptive pair at a tolerance of 1e-14, because an effect of the scene, which is named, has no series in the reference.
+    Itself(&'static str),
 }
 
 impl fmt::Display for ReferenceKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::ClosedForm => "the closed form, in 128 bits",
-            Self::Extended => "a solver of its own in 128 bits: Taylor series of order 30, every surface by itself",
-        })
+        match self {
+            Self::ClosedForm => f.write_str("the closed form, in 128 bits"),
+            Self::Extended => f.write_str("a solver of its own in 128 bits: Taylor series, every surface by itself"),
+            Self::Itself(effect) => write!(
+                f,
+                "only the adaptive pair at tolerance 1e-14, which shares the code that it judges: {effect} is not in the solver of 128 bits"
+            ),
+        }
     }
 }
 
@@ -42,8 +49,10 @@ pub struct Measurement {
     pub variant: Variant,
     /// Its step in s or its tolerance; 0 for the exact flight.
     pub value: f64,
-    /// The mean length of its steps in s.
-    pub mean_step: f64,
+    /// The effective length of its steps in s: held fixed, it would give a method of order 5 the same error.
+    pub step: f64,
+    /// The same in the first flights.
+    pub flight_step: f64,
     /// Its errors.
     pub errors: Errors,
     /// The parts of the error of the positions.
@@ -83,6 +92,19 @@ pub struct Sweep {
     pub order: Order,
 }
 
+/// The scene on finer meshes of the same surfaces, beside the finest: the share of the discretisation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Resolution {
+    /// Faces of all meshes.
+    pub faces: usize,
+    /// Distance of the positions from those on the finest meshes before the first impacts on those are over by a sample, in m.
+    pub first_bounce: f64,
+    /// The same over all that is compared, in m.
+    pub position: f64,
+    /// Difference of the times of the first impact, in s; none if one has none.
+    pub first_impact: Option<f64>,
+}
+
 /// What a user should know before reading the numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Remark {
@@ -116,6 +138,15 @@ pub enum Remark {
     },
     /// The exact flight is not offered, because something other than gravity acts.
     NoExactFlight,
+    /// The ways of the slides are not offered, because a surface grips and they know no spin.
+    NoTextbook,
+    /// What a mesh is taken to be cut from.
+    Discretised {
+        /// The surface, by its index in the scene.
+        surface: usize,
+        /// What it is taken for.
+        original: Original,
+    },
     /// A method whose flights are exact under gravity alone.
     ExactFlights(Variant),
     /// A bounce lowers the order.
@@ -159,6 +190,18 @@ impl fmt::Display for Remark {
                 };
                 write!(f, "ball {ball}: the reference ends at {at:.4} s: {why}; so does the comparison")
             }
+            Self::Discretised { surface, original } => match original {
+                Original::Sphere { radius, .. } => {
+                    write!(f, "surface {surface}: its vertices lie on a sphere of radius {radius:.4} m; refined, they stay on it")
+                }
+                Original::Smooth => write!(
+                    f,
+                    "surface {surface}: refined as the smooth surface through its vertices and their normals (point-normal triangles); \
+                     if it was never smooth, the numbers of the discretisation mean nothing"
+                ),
+                Original::Itself => write!(f, "surface {surface}: a mesh with sharp edges, taken for what it is: no discretisation"),
+            },
+            Self::NoTextbook => f.write_str("the ways of the slides are not offered: a surface grips, and they know no spin"),
             Self::NoExactFlight => f.write_str("`exact` is not offered: something other than uniform gravity acts"),
             Self::ExactFlights(variant) => write!(
                 f,
@@ -172,6 +215,7 @@ impl fmt::Display for Remark {
                 match variant {
                     Variant::Rk4LinearF => "f = d0 / (d0 - d1) is off by O(h^2) on a curved path, whatever the flight is worth",
                     Variant::Adaptive => "the step after a bounce begins anew, with the length that was right before it",
+                    Variant::Slides | Variant::SlidesOwnF => "a rounded hit position may lie behind the plane, and edges are not met",
                     _ => "the errors of several flights and impacts add up, and none of them is in its limit yet",
                 }
             ),
@@ -201,6 +245,8 @@ pub struct Report {
     pub ends: Option<Ends>,
     /// The methods.
     pub sweeps: Vec<Sweep>,
+    /// The surfaces at several resolutions, from the given one on; empty if nothing in the scene is a mesh of something smooth.
+    pub resolutions: Vec<Resolution>,
     /// What else there is to know.
     pub remarks: Vec<Remark>,
 }

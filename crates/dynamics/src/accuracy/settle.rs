@@ -16,15 +16,17 @@ pub struct Settled {
     pub complete: bool,
 }
 
-/// A ball with velocity `v` and normal speed `rate` on a surface of unit normal `n`, for at most `remaining` seconds.
+/// At the time `now`, a ball with velocity `v` and normal speed `rate` on a surface of unit normal `n`, for at most `remaining` seconds.
 ///
 /// Only a plane (`on_plane`) carries a slide, because it has no end; and only where nothing but gravity acts.
+#[allow(clippy::too_many_arguments, reason = "the whole of a contact")]
 pub fn settle(
     field: &Field,
     n: &Vector,
     rate: &Real,
     material: &Material,
     v: &Vector,
+    now: &Real,
     remaining: &Real,
     on_plane: bool,
 ) -> Settled {
@@ -32,7 +34,7 @@ pub fn settle(
     let c_r = Real::from(material.restitution.coefficient());
     let along = |w: &Vector| sub(w, &scale(n, &dot(n, w)));
     let mut v_t = along(v);
-    let a = field.acceleration(&v_t);
+    let a = field.acceleration(&v_t, now);
     let (pressed, a_t) = (-dot(n, &a), along(&a));
     let mut settled = Settled { pieces: Vec::new(), rest: false, complete: false };
     if pressed <= zero {
@@ -50,7 +52,7 @@ pub fn settle(
         left = &left - &seconds;
         v_t = match material.friction {
             Friction::Linear(c_f) if c_f.get() > 0.0 => scale(&v_t, &zero),
-            _ => slow(&material.friction, &v_t, &(rate / &tail), material),
+            _ => slow(&material.friction, &v_t, &(rate / &tail), &c_r),
         };
     }
     let grip = match material.friction.in_contact() {

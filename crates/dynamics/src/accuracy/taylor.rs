@@ -1,9 +1,13 @@
-//! The reference's flights: Taylor series of the motion under gravity and air resistance, to the last of their digits.
+//! The reference's flights: Taylor series of the motion under gravity, buoyancy, air resistance and the Magnus force, to the last of their digits.
 //!
 //! Under constant acceleration the series ends, and is the parabola itself.
 
-use super::real::{BITS, Real, Vector, add, dot, norm, rounded, scale, sub, vector};
-use crate::effects::drag::{Drag, Law};
+use super::real::{BITS, Real, Vector, add, cross, dot, norm, rounded, scale, sub, vector};
+use crate::body::Ball;
+use crate::effects::buoyancy::ADDED_MASS;
+use crate::effects::drag::Law;
+use crate::effects::friction::Friction;
+use crate::scene::Scene;
 use nalgebra::Vector3;
 
 /// Terms of a series.
@@ -12,9 +16,11 @@ const ORDER: usize = 30;
 /// What accelerates a ball.
 #[derive(Debug, Clone)]
 pub struct Field {
-    gravity: Vector,
+    /// What gravity and buoyancy leave.
+    constant: Vector,
     /// Resistance per mass, and the wind.
     resistance: Option<(Resistance, Vector)>,
+    lift: Option<Lift>,
 }
 
 /// Resistance per mass.
@@ -24,6 +30,16 @@ enum Resistance {
     Linear(Real),
     /// c of a = -c |u| u.
     Quadratic(Real),
+}
+
+/// The Magnus force: a = omega x u times a factor, omega falling as e^(-t / tau).
+#[derive(Debug, Clone)]
+struct Lift {
+    /// At the start, times the factor.
+    spin: Vector,
+    wind: Vector,
+    /// 1 / tau.
+    decay: Real,
 }
 
 /// A stretch of flight, as a series in the time from its start.
@@ -38,66 +54,125 @@ pub struct Flight {
 }
 
 impl Field {
-    /// For a ball of `radius` (m) and `mass` (kg).
-    pub fn new(gravity: &Vector3<f64>, drag: Option<&Drag>, radius: f64, mass: Option<f64>) -> Self {
-        let per_mass = |x: Real| &x / &Real::from(mass.unwrap_or(0.0));
-        let resistance = drag.map(|drag| {
-            let law = match drag.law() {
-                Law::Linear(k) => Resistance::Linear(per_mass(Real::from(k))),
-                Law::Quadratic(c_rho) => {
-                    let area = &Real::pi() * &(&Real::from(radius) * &Real::from(radius));
-                    Resistance::Quadratic(per_mass(&(&Real::from(0.5) * &Real::from(c_rho)) * &area))
-                }
-            };
-            (law, vector(&drag.wind()))
+    /// What accelerates `ball` in `scene`; the name of an effect that has no series here, if there is one.
+    pub fn of(scene: &Scene, ball: &Ball) -> Result<Self, &'static str> {
+        // Taken apart, so that an effect that comes to a scene is not forgotten here.
+        let Scene { gravity, drag, magnus, spin_decay, buoyancy, duration: _, surfaces, balls: _, rest: _, method: _ } =
+            scene;
+        if surfaces.iter().any(|s| matches!(s.material.friction, Friction::Grip(_))) {
+            return Err("friction that grips");
+        }
+        let g = vector(&gravity.map_or(Vector3::zeros(), |g| g.acceleration()));
+        let r = Real::from(ball.radius());
+        let area = &Real::pi() * &(&r * &r);
+        let mass = Real::from(ball.mass().unwrap_or(0.0));
+        let (mut constant, mut inertia) = (g.clone(), mass.clone());
+        if let Some(buoyancy) = buoyancy {
+            let volume = &(&area * &r) * &(Real::from(4.0) / Real::from(3.0));
+            let displaced = &Real::from(buoyancy.density()) * &volume;
+            inertia = &mass + &(&Real::from(ADDED_MASS) * &displaced);
+            constant = scale(&g, &(&(&mass - &displaced) / &inertia));
+        }
+        let half = Real::from(0.5);
+        let quadratic = |coefficient: f64, density: f64| {
+            let c_rho = &Real::from(coefficient) * &Real::from(density);
+            Resistance::Quadratic(&(&(&half * &c_rho) * &area) / &inertia)
+        };
+        let resistance = match drag.filter(|drag| !drag.is_none()) {
+            None => None,
+            Some(drag) => {
+                let law = match drag.law() {
+                    Law::Linear(k) => Resistance::Linear(&Real::from(k) / &inertia),
+                    Law::Quadratic { coefficient, density } => quadratic(coefficient, density),
+                    Law::OfBall(density) => quadratic(ball.drag().unwrap_or(0.0), density),
+                    Law::Sphere { .. } => return Err("the drag of a smooth sphere"),
+                };
+                Some((law, vector(&drag.wind())))
+            }
+        };
+        let lift = magnus.filter(|_| ball.spin() != Vector3::zeros()).map(|magnus| {
+            let (k_rho, wind) = magnus.parts();
+            let factor = &(&(&(&half * &Real::from(k_rho)) * &area) * &r) / &inertia;
+            let decay = spin_decay.map_or(Real::zero(), |d| Real::from(1.0) / Real::from(d.time_constant()));
+            Lift { spin: scale(&vector(&ball.spin()), &factor), wind: vector(&wind), decay }
         });
-        Self { gravity: vector(gravity), resistance }
+        Ok(Self { constant, resistance, lift })
     }
 
     /// Whether nothing but gravity acts.
     pub fn is_constant(&self) -> bool {
-        self.resistance.is_none()
+        self.resistance.is_none() && self.lift.is_none()
     }
 
-    /// The acceleration at velocity `v`.
-    pub fn acceleration(&self, v: &Vector) -> Vector {
-        match &self.resistance {
-            None => self.gravity.clone(),
-            Some((law, wind)) => {
-                let u = sub(v, wind);
-                let by = match law {
-                    Resistance::Linear(k) => k.clone(),
-                    Resistance::Quadratic(c) => c * &norm(&u),
-                };
-                sub(&self.gravity, &scale(&u, &by))
-            }
-        }
-    }
-
-    /// The flight from `x` with `v`, for at most `remaining` seconds.
-    pub fn fly(&self, x: &Vector, v: &Vector, remaining: f64) -> Flight {
-        let Some((law, wind)) = &self.resistance else {
-            return Flight::parabola(x, v, &scale(&self.gravity, &Real::from(0.5)), remaining);
-        };
-        // Coefficients of u = v - w.
-        let mut u = vec![sub(v, wind)];
-        let mut force = QuadraticForce::new(&u[0]);
-        for k in 0..ORDER {
-            let resisted = match law {
-                Resistance::Linear(c) => scale(&u[k], c),
-                Resistance::Quadratic(c) => scale(&force.coefficient(&u, k), c),
+    /// The acceleration at velocity `v` at the time `t`.
+    pub fn acceleration(&self, v: &Vector, t: &Real) -> Vector {
+        let mut a = self.constant.clone();
+        if let Some((law, wind)) = &self.resistance {
+            let u = sub(v, wind);
+            let by = match law {
+                Resistance::Linear(k) => k.clone(),
+                Resistance::Quadratic(c) => c * &norm(&u),
             };
-            let a = if k == 0 { sub(&self.gravity, &resisted) } else { scale(&resisted, &Real::from(-1.0)) };
+            a = sub(&a, &scale(&u, &by));
+        }
+        if let Some(lift) = &self.lift {
+            a = add(&a, &cross(&lift.at(t), &sub(v, &lift.wind)));
+        }
+        a
+    }
+
+    /// The flight from `x` with `v` at the time `t`, for at most `remaining` seconds.
+    pub fn fly(&self, x: &Vector, v: &Vector, t: &Real, remaining: f64) -> Flight {
+        if self.is_constant() {
+            return Flight::parabola(x, v, &scale(&self.constant, &Real::from(0.5)), remaining);
+        }
+        let zero = || [Real::zero(), Real::zero(), Real::zero()];
+        let wind = self.resistance.as_ref().map_or(zero(), |(_, wind)| wind.clone());
+        // Coefficients of u = v - w.
+        let mut u = vec![sub(v, &wind)];
+        let mut force = QuadraticForce::new(&u[0]);
+        let spin = self.lift.as_ref().map(|lift| lift.series(t));
+        for k in 0..ORDER {
+            let mut a = if k == 0 { self.constant.clone() } else { zero() };
+            let resisted = match &self.resistance {
+                None => zero(),
+                Some((Resistance::Linear(c), _)) => scale(&u[k], c),
+                Some((Resistance::Quadratic(c), _)) => scale(&force.coefficient(&u, k), c),
+            };
+            a = sub(&a, &resisted);
+            if let (Some(lift), Some(spin)) = (&self.lift, &spin) {
+                // u + (w - w') for the Magnus force's own wind w'.
+                let first = sub(&add(&u[0], &wind), &lift.wind);
+                let product = |i: usize| cross(&spin[i], if i == k { &first } else { &u[k - i] });
+                a = (0..=k).fold(a, |sum, i| add(&sum, &product(i)));
+            }
             u.push(scale(&a, &(Real::from(1.0) / Real::from((k + 1) as f64))));
         }
         let mut terms = vec![x.clone()];
         for (k, term) in u.iter().enumerate() {
-            let v = if k == 0 { add(term, wind) } else { term.clone() };
+            let v = if k == 0 { add(term, &wind) } else { term.clone() };
             terms.push(scale(&v, &(Real::from(1.0) / Real::from((k + 1) as f64))));
         }
         let seconds = length(&terms).min(remaining);
         let bend = bend(&terms, seconds);
         Flight { terms, seconds, bend }
+    }
+}
+
+impl Lift {
+    /// Spin and factor at the time `t`.
+    fn at(&self, t: &Real) -> Vector {
+        if self.decay.is_zero() { self.spin.clone() } else { scale(&self.spin, &(-&(&self.decay * t)).exp()) }
+    }
+
+    /// Its series from the time `t`.
+    fn series(&self, t: &Real) -> Vec<Vector> {
+        let mut series = vec![self.at(t)];
+        for k in 1..=ORDER {
+            let next = scale(&series[k - 1], &(-&(&self.decay / &Real::from(k as f64))));
+            series.push(next);
+        }
+        series
     }
 }
 
@@ -199,10 +274,21 @@ impl Flight {
 mod tests {
     use super::*;
 
-    fn end(field: &Field, x: Vector3<f64>, v: Vector3<f64>, seconds: f64) -> (Vector, Vector) {
-        let (mut x, mut v, mut t) = (vector(&x), vector(&v), 0.0);
-        while t < seconds {
-            let flight = field.fly(&x, &v, seconds - t);
+    use crate::effects::drag::Drag;
+    use crate::effects::gravity::Gravity;
+    use crate::effects::magnus::Magnus;
+    use nalgebra::Point3;
+
+    fn field(g: f64, drag: Drag, radius: f64, mass: f64) -> Field {
+        let ball = Ball::new(Point3::origin(), Vector3::zeros(), radius, Some(mass)).unwrap();
+        let gravity = Some(Gravity::uniform(Vector3::new(0.0, 0.0, -g)).unwrap());
+        Field::of(&Scene { gravity, drag: Some(drag), ..Scene::lasting(1.0) }, &ball).unwrap()
+    }
+
+    fn end(field: &Field, x: Vector, v: Vector, from: f64, to: f64) -> (Vector, Vector) {
+        let (mut x, mut v, mut t) = (x, v, from);
+        while t < to {
+            let flight = field.fly(&x, &v, &Real::from(t), to - t);
             let h = Real::from(flight.seconds);
             (x, v) = (flight.position(&h), flight.velocity(&h));
             t += flight.seconds;
@@ -210,12 +296,15 @@ mod tests {
         (x, v)
     }
 
+    fn origin() -> Vector {
+        vector(&Vector3::zeros())
+    }
+
     #[test]
     fn quadratic_drag_without_gravity_is_its_closed_form() {
         // v = v0 / (1 + c v0 t), c = rho C A / 2 m with A = pi / 4.
-        let drag = Drag::quadratic(1.0, 1.0).unwrap();
-        let field = Field::new(&Vector3::zeros(), Some(&drag), 0.5, Some(2.0));
-        let (_, v) = end(&field, Vector3::zeros(), Vector3::new(3.0, 0.0, 4.0), 2.0);
+        let field = field(0.0, Drag::quadratic(1.0, 1.0).unwrap(), 0.5, 2.0);
+        let (_, v) = end(&field, origin(), vector(&Vector3::new(3.0, 0.0, 4.0)), 0.0, 2.0);
         let c = &Real::pi() / &Real::from(16.0);
         let speed = Real::from(5.0) / (Real::from(1.0) + &c * &Real::from(10.0));
         let error = (norm(&v) - speed).to_f64().abs();
@@ -223,30 +312,31 @@ mod tests {
     }
 
     #[test]
-    fn a_drop_from_rest_and_a_throw_through_its_apex_are_smooth_to_the_last_digit() {
-        // Upwards, then down again: where u = 0, |u| has a kink. Energy: v dv/dz = -g - c |v| v has a first integral.
-        let drag = Drag::quadratic(0.5, 1.2).unwrap();
-        let g = Vector3::new(0.0, 0.0, -10.0);
-        let field = Field::new(&g, Some(&drag), 0.1, Some(0.1));
-        let whole = end(&field, Vector3::zeros(), Vector3::new(0.0, 0.0, 4.0), 1.5);
-        let half = end(&field, Vector3::zeros(), Vector3::new(0.0, 0.0, 4.0), 0.7);
-        let rest = {
-            let (mut x, mut v, mut t) = (half.0, half.1, 0.7);
-            while t < 1.5 {
-                let flight = field.fly(&x, &v, 1.5 - t);
-                let h = Real::from(flight.seconds);
-                (x, v) = (flight.position(&h), flight.velocity(&h));
-                t += flight.seconds;
-            }
-            (x, v)
-        };
-        // 0.7 + (1.5 - 0.7) is 1.5 to rounding of the times only.
-        assert!((&whole.0[2] - &rest.0[2]).to_f64().abs() < 2e-15);
-        // The terminal speed is reached as tanh from rest: v = vt tanh(g t / vt).
-        let (_, v) = end(&field, Vector3::zeros(), Vector3::zeros(), 0.5);
+    fn a_drop_from_rest_and_a_throw_through_its_apex_keep_their_digits() {
+        // Upwards, then down again: where u = 0, |u| has a kink, and steps get short.
+        let field = field(10.0, Drag::quadratic(0.5, 1.2).unwrap(), 0.1, 0.1);
+        let up = vector(&Vector3::new(0.0, 0.0, 4.0));
+        let whole = end(&field, origin(), up.clone(), 0.0, 1.5);
+        let (x, v) = end(&field, origin(), up, 0.0, 0.75);
+        let rest = end(&field, x, v, 0.75, 1.5);
+        assert!((&whole.0[2] - &rest.0[2]).to_f64().abs() < 2f64.powi(-100));
+        // From rest v = vt tanh(g t / vt).
+        let (_, v) = end(&field, origin(), origin(), 0.0, 0.5);
         let c = 0.5 * 0.5 * 1.2 * std::f64::consts::PI * 0.01 / 0.1;
         let vt = (10.0 / c).sqrt();
         let expected = -vt * (10.0 * 0.5 / vt).tanh();
         assert!((v[2].to_f64() - expected).abs() < 4e-15, "{} {expected}", v[2].to_f64());
+    }
+
+    #[test]
+    fn the_magnus_force_alone_turns_the_flight_around_a_circle() {
+        // a = f omega x v: the velocity turns with f omega, here 2 rad/s.
+        let factor = 0.5 * std::f64::consts::PI * 0.25 * 0.5 / 2.0;
+        let spin = Vector3::new(0.0, 0.0, 2.0 / factor);
+        let ball = Ball::new(Point3::origin(), Vector3::zeros(), 0.5, Some(2.0)).unwrap().spinning(spin).unwrap();
+        let scene = Scene { magnus: Some(Magnus::new(1.0, 1.0).unwrap()), ..Scene::lasting(1.0) };
+        let field = Field::of(&scene, &ball).unwrap();
+        let (_, v) = end(&field, origin(), vector(&Vector3::new(3.0, 0.0, 0.0)), 0.0, 1.0);
+        assert!((v[0].to_f64() - 3.0 * 2f64.cos()).abs() < 4e-15 && (v[1].to_f64() - 3.0 * 2f64.sin()).abs() < 4e-15);
     }
 }

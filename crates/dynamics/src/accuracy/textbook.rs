@@ -19,6 +19,7 @@ use crate::events::{Ending, Event, EventKind, Motion, Outcome};
 use crate::integrators::{Integrator, Step, Stepping};
 use crate::observer::{Observer, Segment};
 use crate::plan::Plan;
+use crate::surface::Material;
 use carom_geometry::bounds::Aabb;
 use carom_geometry::mesh::Mesh;
 use carom_geometry::projection::DominantAxis;
@@ -60,6 +61,7 @@ struct Collision {
 
 /// Simulates one ball of `plan` in the way of the slides and shows it to `observer`.
 pub fn simulate_textbook(plan: &Plan, method: &Textbook, ball: &Ball, observer: &mut impl Observer) -> Outcome {
+    let surfaces = plan.surfaces_for(ball);
     let forces = plan.forces(ball);
     let mut counters = Counters::default();
     let mut integrator = Integrator::Stepping(method.stepping, method.step);
@@ -79,7 +81,7 @@ pub fn simulate_textbook(plan: &Plan, method: &Textbook, ball: &Ball, observer: 
                 break 'run;
             }
             let Some(hit) = earliest(plan, method, ball, &step, &mut counters) else {
-                observer.segment(&Segment { time, end, step, to: 1.0, motion: Motion::Flying });
+                observer.segment(&Segment { time, end, step, to: 1.0, motion: Motion::Flying, turning: None });
                 state = step.end();
                 break;
             };
@@ -90,11 +92,18 @@ pub fn simulate_textbook(plan: &Plan, method: &Textbook, ball: &Ball, observer: 
             };
             let until = time + timestep;
             if timestep > 0.0 {
-                observer.segment(&Segment { time, end: until, step: arrived, to: arrived.to, motion: Motion::Flying });
+                observer.segment(&Segment {
+                    time,
+                    end: until,
+                    step: arrived,
+                    to: arrived.to,
+                    motion: Motion::Flying,
+                    turning: None,
+                });
             }
             state = if timestep > 0.0 { arrived.end() } else { state };
             let velocity_in = state.velocity;
-            state.velocity = respond(plan, &hit, velocity_in, &mut counters);
+            state.velocity = respond(&surfaces[hit.surface].material, &hit, velocity_in, &mut counters);
             observer.event(&Event {
                 time: until,
                 kind: EventKind::Impact,
@@ -105,6 +114,7 @@ pub fn simulate_textbook(plan: &Plan, method: &Textbook, ball: &Ball, observer: 
                 velocity_in,
                 velocity: state.velocity,
                 bound: None,
+                spin: None,
             });
             (time, remaining) = (until, remaining - timestep);
             collisions += 1;
@@ -117,18 +127,17 @@ pub fn simulate_textbook(plan: &Plan, method: &Textbook, ball: &Ball, observer: 
     if ending == Ending::Completed {
         time = plan.duration;
     }
-    Outcome { ending, time, state, motion: Motion::Flying, counters }
+    Outcome { ending, time, state, motion: Motion::Flying, spin: None, counters }
 }
 
 /// v_n+ = -c_r v_n-, and friction on v_t; also where the ball does not close.
-fn respond(plan: &Plan, hit: &Collision, v: Vector3<f64>, counters: &mut Counters) -> Vector3<f64> {
-    let material = &plan.surfaces[hit.surface].material;
+fn respond(material: &Material, hit: &Collision, v: Vector3<f64>, counters: &mut Counters) -> Vector3<f64> {
     let v_n = hit.normal * hit.normal.dot(&v);
     let v_t = v - v_n;
     counters.impacts += 1;
     counters.restitution += 1;
     counters.friction += 1;
-    let c_r = material.restitution.coefficient();
+    let c_r = material.restitution.at(v_n.norm());
     material.friction.slow(v_t, v_n.norm(), c_r) - v_n * c_r
 }
 
@@ -178,14 +187,14 @@ fn earliest(plan: &Plan, method: &Textbook, ball: &Ball, step: &Step, counters: 
     earliest
 }
 
-/// Where `distance`, which begins at `d0`, changes its sign in [0, 1].
+/// Where `distance`, which begins at `d0`, changes its sign in [0, 1]: the last f that has not.
 fn root(distance: impl Fn(f64) -> f64, d0: f64) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
         if (distance(middle) >= 0.0) == (d0 >= 0.0) { low = middle } else { high = middle }
     }
-    high
+    low
 }
 
 /// Whether the determinants of the edges and the point, on the plane of the dominant axis, all have one sign.

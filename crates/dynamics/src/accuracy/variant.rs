@@ -64,10 +64,10 @@ impl Variant {
     pub fn name(self) -> &'static str {
         match self {
             Self::Slides => "slides",
-            Self::SlidesOwnF => "slides, own f",
+            Self::SlidesOwnF => "slides+own-f",
             Self::Euler => "euler",
             Self::SemiImplicitEuler => "semi-implicit-euler",
-            Self::Rk4LinearF => "rk4, linear f",
+            Self::Rk4LinearF => "rk4+linear-f",
             Self::Rk4 => "rk4",
             Self::Adaptive => "adaptive",
             Self::Exact => "exact",

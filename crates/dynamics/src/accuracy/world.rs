@@ -157,6 +157,9 @@ fn closest([a, b, c]: &[Vector; 3], x: &Vector) -> Vector {
 struct Face {
     surface: usize,
     obstacle: Obstacle,
+    /// Its box.
+    low: Vector3<f64>,
+    high: Vector3<f64>,
 }
 
 /// All surfaces.
@@ -174,24 +177,24 @@ impl World {
     /// The surfaces of `plan`.
     pub fn new(plan: &Plan) -> Self {
         let mut faces = Vec::new();
-        let mut boxes = Vec::new();
         for (surface, mesh) in &plan.meshes {
             for face in 0..mesh.faces().len() as u32 {
                 let corners = mesh.triangle(face);
-                faces.push(Face { surface: *surface, obstacle: Obstacle::Triangle(corners.each_ref().map(point)) });
+                let obstacle = Obstacle::Triangle(corners.each_ref().map(point));
                 let low = corners[0].coords.inf(&corners[1].coords).inf(&corners[2].coords);
                 let high = corners[0].coords.sup(&corners[1].coords).sup(&corners[2].coords);
-                boxes.push((low, high));
+                faces.push(Face { surface: *surface, obstacle, low, high });
             }
         }
         // Cells of about the size of the faces.
-        let size = boxes.iter().map(|(low, high)| (high - low).amax()).sum::<f64>() / boxes.len().max(1) as f64;
+        let size =
+            faces.iter().map(|face: &Face| (face.high - face.low).amax()).sum::<f64>() / faces.len().max(1) as f64;
         let cell = if size > 0.0 { size } else { 1.0 };
         let mut world = Self { planes: plan.planes.clone(), faces, grid: HashMap::new(), large: Vec::new(), cell };
-        for (face, (low, high)) in (0..).zip(&boxes) {
-            match world.cells(low, high) {
-                Some(cells) => cells.into_iter().for_each(|cell| world.grid.entry(cell).or_default().push(face)),
-                None => world.large.push(face),
+        for face in 0..world.faces.len() {
+            match world.cells(&world.faces[face].low, &world.faces[face].high) {
+                Some(cells) => cells.into_iter().for_each(|cell| world.grid.entry(cell).or_default().push(face as u32)),
+                None => world.large.push(face as u32),
             }
         }
         world
@@ -202,7 +205,7 @@ impl World {
         let index = |v: &Vector3<f64>| v.map(|x| (x / self.cell).floor());
         let (a, b) = (index(low), index(high));
         let count = (b - a).add_scalar(1.0).product();
-        if !(count <= MAX_CELLS as f64) {
+        if count.is_nan() || count > MAX_CELLS as f64 {
             return None;
         }
         let range = |axis: usize| (a[axis] as i64)..=(b[axis] as i64);
@@ -251,7 +254,9 @@ impl World {
         };
         found.sort_unstable();
         found.dedup();
-        found.into_iter().map(|f| &self.faces[f as usize]).map(|face| (face.surface, &face.obstacle)).collect()
+        let touches = |face: &&Face| (0..3).all(|k| face.low[k] <= high[k] && low[k] <= face.high[k]);
+        let faces = found.into_iter().map(|f| &self.faces[f as usize]).filter(touches);
+        faces.map(|face| (face.surface, &face.obstacle)).collect()
     }
 }
 
@@ -281,10 +286,8 @@ mod tests {
     #[test]
     fn a_ball_meets_an_edge_where_the_quartic_says() {
         // Straight down beside the edge y = 0 at a distance of 0.3, radius 0.5: it touches 0.4 above.
-        use super::super::taylor::Field;
-        let field = Field::new(&Vector3::zeros(), None, 0.5, None);
         let start = [1.0, -0.3, 2.4].map(Real::from);
-        let flight = field.fly(&start, &[0.0, 0.0, -1.0].map(Real::from), 8.0);
+        let flight = Flight::parabola(&start, &[0.0, 0.0, -1.0].map(Real::from), &[0.0; 3].map(Real::from), 8.0);
         let touch = Real::from(2f64.powi(-100));
         let met =
             Obstacle::Triangle(corners()).meet(&flight, &Real::from(0.5), &Real::zero(), &Real::from(8.0), &touch);

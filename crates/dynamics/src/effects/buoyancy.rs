@@ -29,6 +29,11 @@ impl Buoyancy {
         self.density == 0.0
     }
 
+    /// The density of the fluid in kg/m^3.
+    pub fn density(&self) -> f64 {
+        self.density
+    }
+
     /// The mass in kg of the fluid that `ball` displaces.
     pub fn displaced(&self, ball: &Ball) -> f64 {
         self.density * ball.volume()

@@ -15,8 +15,10 @@ use nalgebra::Vector3;
 pub(crate) enum Law {
     /// F = -k (v - w), k in kg/s.
     Linear(f64),
-    /// F = -1/2 rho C A |v - w| (v - w); holds C rho in kg/m^3.
-    Quadratic(f64),
+    /// F = -1/2 rho C A |v - w| (v - w).
+    Quadratic { coefficient: f64, density: f64 },
+    /// The same with the C of each ball; holds rho in kg/m^3.
+    OfBall(f64),
     /// The same with C of a smooth sphere at its Reynolds number.
     Sphere { density: f64, viscosity: f64 },
 }
@@ -64,7 +66,14 @@ impl Drag {
         let ok = |x: f64| x.is_finite() && x >= 0.0;
         require("drag coefficient", coefficient, "finite and >= 0", ok(coefficient))?;
         require("air density", density, "finite and >= 0, in kg/m^3", ok(density))?;
-        Ok(Self { law: Law::Quadratic(coefficient * density), wind: Vector3::zeros() })
+        Ok(Self { law: Law::Quadratic { coefficient, density }, wind: Vector3::zeros() })
+    }
+
+    /// The quadratic law with the drag coefficient of each ball, in still air of `density` rho in kg/m^3.
+    pub fn of_ball(density: f64) -> Result<Self, ValueError> {
+        let ok = density.is_finite() && density >= 0.0;
+        require("air density", density, "finite and >= 0, in kg/m^3", ok)?;
+        Ok(Self { law: Law::OfBall(density), wind: Vector3::zeros() })
     }
 
     /// The drag of a smooth sphere, whose coefficient follows from its speed, in still air of `density` rho in kg/m^3 and `viscosity` mu in
@@ -91,10 +100,26 @@ impl Drag {
         self.wind
     }
 
+    /// The density of the air in kg/m^3, if the law names it.
+    pub fn density(&self) -> Option<f64> {
+        match self.law() {
+            Law::Linear(_) => None,
+            Law::Quadratic { density, .. } | Law::OfBall(density) | Law::Sphere { density, .. } => Some(density),
+        }
+    }
+
     /// Whether it resists nothing: then it is not even asked.
     pub fn is_none(&self) -> bool {
-        matches!(self.law, Law::Linear(0.0) | Law::Quadratic(0.0))
-            || matches!(self.law, Law::Sphere { density: 0.0, .. })
+        match self.law {
+            Law::Linear(k) => k == 0.0,
+            Law::Quadratic { coefficient, density } => coefficient * density == 0.0,
+            Law::OfBall(density) | Law::Sphere { density, .. } => density == 0.0,
+        }
+    }
+
+    /// Whether it asks each ball for its drag coefficient.
+    pub fn is_of_ball(&self) -> bool {
+        matches!(self.law, Law::OfBall(_))
     }
 
     /// Whether its force is in proportion to the relative speed.
@@ -106,7 +131,8 @@ impl Drag {
     pub fn force_per_speed(&self, speed: f64, body: &Body) -> f64 {
         match self.law {
             Law::Linear(k) => k,
-            Law::Quadratic(c_rho) => 0.5 * c_rho * body.area() * speed,
+            Law::Quadratic { coefficient, density } => 0.5 * (coefficient * density) * body.area() * speed,
+            Law::OfBall(density) => 0.5 * (body.drag * density) * body.area() * speed,
             Law::Sphere { density, viscosity } => {
                 let re = density * speed * (2.0 * body.radius) / viscosity;
                 let creeping = STOKES / 4.0 * std::f64::consts::PI * viscosity * body.radius;
@@ -130,6 +156,13 @@ impl Flow for Drag {
         Some(self.wind)
     }
 
+    fn rate(&self, body: &Body) -> Option<f64> {
+        match self.law {
+            Law::Linear(k) => Some(k / body.inertia),
+            _ => None,
+        }
+    }
+
     fn count(&self, counters: &mut Counters) {
         counters.drag += 1;
     }
@@ -140,7 +173,7 @@ mod tests {
     use super::*;
     use nalgebra::Point3;
 
-    const BODY: Body = Body { radius: 0.5, inertia: 2.0, spin: Vector3::new(0.0, 0.0, 0.0) };
+    const BODY: Body = Body { radius: 0.5, inertia: 2.0, drag: 0.5, spin: Vector3::new(0.0, 0.0, 0.0) };
 
     fn moving(velocity: Vector3<f64>) -> State {
         State { position: Point3::origin(), velocity }

@@ -1,5 +1,6 @@
 //! Friction at an impact: what it takes off the tangential velocity v_t (section 3.2.2 of the chapter).
 
+use crate::effects::grip::Grip;
 use crate::error::{ValueError, require};
 use crate::tolerance::LARGEST;
 use nalgebra::Vector3;
@@ -15,6 +16,8 @@ pub enum Friction {
     Coulomb(Coefficient),
     /// The impulse law: as Coulomb, with mu (1 + c_r) |v_n-|, which is mu times the normal impulse per mass.
     Impulse(Coefficient),
+    /// The impulse law at the point of contact, which turns the ball: see [`Grip`]. Velocity alone does not tell what it does.
+    Grip(Grip),
 }
 
 /// A coefficient of friction within the range of its law.
@@ -51,7 +54,7 @@ impl Friction {
     /// and restitution is `c_r`. Never more than v_t, never reversed; v_t = 0 stays 0.
     pub fn slow(&self, v_t: Vector3<f64>, closing: f64, c_r: f64) -> Vector3<f64> {
         match *self {
-            Friction::None => v_t,
+            Friction::None | Friction::Grip(_) => v_t,
             Friction::Linear(c_f) => v_t * (1.0 - c_f.get()),
             Friction::Coulomb(mu) => less(v_t, mu.get() * closing),
             Friction::Impulse(mu) => less(v_t, mu.get() * (1.0 + c_r) * closing),
@@ -74,6 +77,8 @@ impl Friction {
             Friction::Coulomb(mu) | Friction::Impulse(mu) if mu.get() > LARGEST => ContactFriction::Sticking,
             Friction::Coulomb(mu) | Friction::Impulse(mu) if mu.get() > 0.0 => ContactFriction::Sliding(mu.get()),
             Friction::Linear(c_f) if c_f.get() > 0.0 => ContactFriction::Sticking,
+            // What grips lets roll.
+            Friction::Grip(grip) => ContactFriction::Sliding(grip.rolling()),
             _ => ContactFriction::Sliding(0.0),
         }
     }

@@ -33,6 +33,11 @@ impl Magnus {
         Ok(Self { wind, ..self })
     }
 
+    /// K rho in kg/m^3, and the wind in m/s.
+    pub(crate) fn parts(&self) -> (f64, Vector3<f64>) {
+        (self.k_rho, self.wind)
+    }
+
     /// Whether it does nothing, however fast a ball spins.
     pub fn is_none(&self) -> bool {
         self.k_rho == 0.0
@@ -66,7 +71,7 @@ mod tests {
     #[test]
     fn backspin_lifts_in_proportion_to_spin_and_speed_and_does_no_work() {
         let magnus = Magnus::new(0.5, 1.25).unwrap().in_wind(Vector3::new(-2.0, 0.0, 0.0)).unwrap();
-        let body = Body { radius: 0.5, inertia: 2.0, spin: Vector3::new(0.0, -10.0, 0.0) };
+        let body = Body { radius: 0.5, inertia: 2.0, drag: 0.0, spin: Vector3::new(0.0, -10.0, 0.0) };
         let state = State { position: Point3::origin(), velocity: Vector3::new(6.0, 0.0, 0.0) };
         let a = magnus.acceleration(&state, &body);
         // 1/2 rho A C_L u^2 / m with C_L = K r omega / u.

@@ -5,6 +5,7 @@ pub mod buoyancy;
 pub mod drag;
 pub mod friction;
 pub mod gravity;
+pub mod grip;
 pub mod magnus;
 pub mod restitution;
 pub mod spin_decay;
@@ -24,6 +25,11 @@ pub trait Flow: std::fmt::Debug + Send + Sync {
 
     /// The velocity in m/s towards which it drives a ball, and never away from it; none if it is no resistance.
     fn calms_to(&self) -> Option<Vector3<f64>>;
+
+    /// The rate in 1/s, if its acceleration of `body` is always that times the velocity that is left to where it calms to.
+    fn rate(&self, _body: &Body) -> Option<f64> {
+        None
+    }
 
     /// Adds one evaluation to its count.
     fn count(&self, counters: &mut Counters);

@@ -3,6 +3,7 @@
 //! Above a closing speed at which the bodies begin to yield, c_r falls as v^(-1/4): K. L. Johnson, *Contact Mechanics* (1985), section 11.4,
 //! for a fully plastic impact. The fourth root is two square roots.
 
+use crate::body::Ball;
 use crate::error::{ValueError, require};
 
 /// The coefficient of restitution c_r, in [0, 1].
@@ -11,13 +12,33 @@ pub struct Restitution {
     c_r: f64,
     /// The closing speed in m/s above which it falls.
     falls_above: f64,
+    /// Whether the ball's own takes its place.
+    of_ball: bool,
 }
 
 impl Restitution {
     /// `c_r` in [0, 1] at every speed: 0 sticks, 1 loses nothing.
     pub fn new(c_r: f64) -> Result<Self, ValueError> {
         let c_r = require("restitution", c_r, "between 0 and 1", (0.0..=1.0).contains(&c_r))?;
-        Ok(Self { c_r, falls_above: f64::INFINITY })
+        Ok(Self { c_r, falls_above: f64::INFINITY, of_ball: false })
+    }
+
+    /// That of each ball, which must have one. Until the plan has put it in, this is 1.
+    pub fn of_ball() -> Self {
+        Self { c_r: 1.0, falls_above: f64::INFINITY, of_ball: true }
+    }
+
+    /// Whether each ball's own is asked for.
+    pub fn is_of_ball(&self) -> bool {
+        self.of_ball
+    }
+
+    /// This, or that of `ball` if it is asked for and there is one.
+    pub(crate) fn for_ball(&self, ball: &Ball) -> Self {
+        match ball.restitution() {
+            Some(c_r) if self.of_ball => Self { c_r, falls_above: f64::INFINITY, of_ball: false },
+            _ => *self,
+        }
     }
 
     /// `c_r` up to the closing speed `speed` in m/s, and c_r (speed / v)^(1/4) at a closing speed v above it.

@@ -1,6 +1,7 @@
 //! Integrators: each turns a state and a timestep into a path and the velocity along it.
 
 pub mod adaptive;
+pub mod damped;
 pub mod euler;
 pub mod exact;
 pub mod rk4;
@@ -11,6 +12,7 @@ use crate::forces::Forces;
 use adaptive::Adaptive;
 use carom_geometry::clearance::MAX_DEGREE;
 use carom_geometry::path::Path;
+use damped::Damped;
 use nalgebra::Vector3;
 
 /// A step: the path of the centre over f in [0, `to`], and the velocity along it.
@@ -48,6 +50,8 @@ pub enum Integrator {
     Stepping(Stepping, f64),
     /// A step of its own choice.
     Adaptive(Adaptive),
+    /// The same in linear drag, whose flights have a closed form.
+    Damped(Damped),
 }
 
 impl Integrator {
@@ -55,7 +59,7 @@ impl Integrator {
     pub fn timestep(&self) -> Option<f64> {
         match self {
             Integrator::Stepping(_, h) => Some(*h),
-            Integrator::Exact | Integrator::Adaptive(_) => None,
+            Integrator::Exact | Integrator::Adaptive(_) | Integrator::Damped(_) => None,
         }
     }
 
@@ -84,6 +88,9 @@ impl Integrator {
                 euler::semi_implicit(state, forces.acceleration(state, counters), timestep)
             }
             Integrator::Stepping(Stepping::Rk4, _) => rk4::step(forces, state, timestep, counters),
+            Integrator::Damped(flight) => {
+                flight.step(state, timestep, &forces.acceleration(state, counters), &forces.constant)
+            }
             Integrator::Adaptive(pair) => {
                 pair.step(state, timestep, |s, after| forces.acceleration_after(s, after, counters))
             }

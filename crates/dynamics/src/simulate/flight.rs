@@ -114,13 +114,16 @@ impl<O: Observer> Walk<'_, O> {
         }
         let closing: Vec<bool> = contacts.iter().map(|c| c.rate < 0.0).collect();
         if closing.contains(&true) {
-            let materials: Vec<_> = contacts.iter().map(|c| self.plan.surfaces[c.surface].material).collect();
+            let materials: Vec<_> = contacts.iter().map(|c| self.surfaces[c.surface].material).collect();
             let velocity_in = self.state.velocity;
             self.state.velocity = if collapses {
                 collapse(velocity_in, &mut contacts)
             } else {
                 respond(velocity_in, &mut contacts, &materials, &mut self.counters)
             };
+            if self.spins && !collapses {
+                self.grip(velocity_in, &mut contacts, &closing, &materials);
+            }
             self.counters.impacts += 1;
             self.halvings = 0;
             for (contact, _) in contacts.iter().zip(&closing).filter(|(_, closing)| **closing) {
@@ -173,7 +176,7 @@ impl<O: Observer> Walk<'_, O> {
                 self.answered.push(*c);
             }
         }
-        let loses = |c: &Contact| self.plan.surfaces[c.surface].material.restitution.coefficient() < 1.0;
+        let loses = |c: &Contact| self.surfaces[c.surface].material.restitution.coefficient() < 1.0;
         if self.standstill < COLLAPSE_AFTER || !self.answered.iter().any(loses) {
             return false;
         }
@@ -184,7 +187,7 @@ impl<O: Observer> Walk<'_, O> {
                 contacts.push(Contact { rate: a.normal.dot(&self.state.velocity), lasting: false, ..*a });
             }
         }
-        contacts.sort_by_key(|c| (self.plan.surfaces[c.surface].rank, c.site));
+        contacts.sort_by_key(|c| (self.surfaces[c.surface].rank, c.site));
         true
     }
 

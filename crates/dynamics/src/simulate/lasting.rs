@@ -24,7 +24,7 @@ impl<O: Observer> Walk<'_, O> {
             .map(|contact| Carrier {
                 contact: *contact,
                 bend: self.obstacles.bend(contact),
-                friction: self.plan.surfaces[contact.surface].material.friction.in_contact(),
+                friction: self.surfaces[contact.surface].material.friction.in_contact(),
                 radius: self.obstacles.radius_at(contact),
             })
             .collect()
@@ -40,6 +40,7 @@ impl<O: Observer> Walk<'_, O> {
     pub(super) fn set_flying(&mut self, left: Option<Contact>) {
         self.motion = Motion::Flying;
         self.settling = None;
+        self.rolls = false;
         if let Some(contact) = left {
             self.tell(EventKind::Leave, &contact, self.state.velocity);
         }
@@ -69,13 +70,17 @@ impl<O: Observer> Walk<'_, O> {
         };
         let Some(carrier) = carriers.get(main) else { return false };
         let pressed = -carrier.contact.normal.dot(&a);
-        let slow = self.state.velocity.norm() <= self.plan.rest.at(pressed.max(0.0)).speed || balance.sticks;
-        if !(slow && balance.holds()) {
+        let threshold = self.plan.rest.at(pressed.max(0.0)).speed;
+        let slow = self.state.velocity.norm() <= threshold || balance.sticks;
+        if !(slow && balance.holds()) || (self.spins && self.turns_on(&carriers, threshold)) {
             return false;
         }
         let contact = carrier.contact;
         self.state.velocity = Vector3::zeros();
         self.motion = Motion::Resting;
+        if self.spins {
+            self.stop_turning(&contact);
+        }
         self.tell(EventKind::Rest, &contact, velocity_in);
         true
     }
@@ -88,9 +93,17 @@ impl<O: Observer> Walk<'_, O> {
     pub(super) fn slide(&mut self) {
         let carriers = self.lasting_carriers();
         let a = self.forces.acceleration(&self.state, &mut self.counters);
-        let balance = Balance::of(&a, &carriers, &self.state);
-        let stopping = self.time_to_stop(&carriers, &balance);
-        if self.settling.is_none() && stopping.is_none() && self.try_to_rest(self.state.velocity) {
+        let mut balance = Balance::of(&a, &carriers, &self.state);
+        let follows = self.spins && self.settling.is_none();
+        self.slip = if follows { self.slipping(&carriers, &balance) } else { None };
+        let rolls = follows && self.slip.is_none() && self.is_gripped(&carriers);
+        let forces = if rolls { self.forces.of_rolling() } else { self.forces };
+        if rolls {
+            balance = Balance::of(&forces.acceleration(&self.state, &mut self.counters), &carriers, &self.state);
+        }
+        let slips = self.slip.is_some();
+        let stopping = if slips { None } else { self.time_to_stop(&carriers, &balance) };
+        if self.settling.is_none() && !slips && stopping.is_none() && self.try_to_rest(self.state.velocity) {
             return;
         }
         if balance.loads.count() == 0 && self.settling.is_none() {
@@ -100,25 +113,31 @@ impl<O: Observer> Walk<'_, O> {
         if self.drop_unloaded(&carriers, &balance) {
             return;
         }
-        if self.settling.is_none() && self.turns_round(&balance) {
+        self.begin_rolling(rolls);
+        if self.settling.is_none() && !slips && self.turns_round(&balance) {
             self.state.velocity = Vector3::zeros();
             self.contacts.iter_mut().for_each(|c| c.rate = 0.0);
         }
         let remaining = self.clock.until(self.plan.duration);
         let last = stopping.and_then(|seconds| self.last_stretch(seconds));
-        let Slide { mut step, stops } = match (self.settling, last) {
-            (Some(settling), _) => self.settling_flight(&settling, &carriers, &balance),
-            (None, Some(last)) => last,
-            (None, None) => {
+        let Slide { mut step, stops } = match (self.slip, self.settling, last) {
+            (Some(slip), ..) => self.slip(&slip, &carriers, remaining),
+            (None, Some(settling), _) => self.settling_flight(&settling, &carriers, &balance),
+            (None, None, Some(last)) => last,
+            (None, None, None) => {
                 let flat = carriers.iter().all(|c| c.bend == Bend::Flat);
                 let slider = if flat { &mut self.slider } else { &mut self.roller };
-                slide(slider, &self.forces, &self.state, &carriers, &balance, remaining, &mut self.counters)
+                slide(slider, &forces, &self.state, &carriers, &balance, remaining, &mut self.counters)
             }
         };
         if self.diverges(&step) {
             return;
         }
-        let motion = if self.settling.is_some() { Motion::Flying } else { Motion::Sliding };
+        let motion = match self.settling {
+            Some(_) => Motion::Flying,
+            None if rolls => Motion::Rolling,
+            None => Motion::Sliding,
+        };
         let off = self.settling.is_none().then(|| self.lift_off(&step, &carriers)).flatten();
         step.to = off.unwrap_or(step.to);
         let mut crossings = Vec::new();

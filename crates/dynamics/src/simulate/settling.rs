@@ -2,7 +2,7 @@
 
 use super::{Settling, Walk};
 use crate::contacts::{Contact, MAX_CONTACTS};
-use crate::effects::friction::ContactFriction;
+use crate::effects::friction::{ContactFriction, Friction};
 use crate::events::Motion;
 use crate::integrators::exact;
 use crate::observer::Observer;
@@ -44,7 +44,7 @@ impl<O: Observer> Walk<'_, O> {
         while let Some((i, hop)) = self.next_held(&a, &carriers, &carrying) {
             carrying[i] = true;
             let contact = &carriers[i].contact;
-            let c_r = self.plan.surfaces[contact.surface].material.restitution.coefficient();
+            let c_r = self.surfaces[contact.surface].material.restitution.coefficient();
             if contact.rate > 0.0 && c_r < 1.0 {
                 // Around an edge the way along the surface is no flight: there the hops end at once.
                 let flat = carriers[i].bend == Bend::Flat;
@@ -135,7 +135,7 @@ impl<O: Observer> Walk<'_, O> {
         // Nor does one go on whose hops the clock has not resolved for long: what is left of them has a closed form.
         let brief = self.standstill >= PATIENCE_WITH_HOPS && 2.0 * rate <= pressed * time_resolution(self.clock.now());
         // Nor one on an elastic wall at the end of a rail, which is for ever as low as what the rail has left of it.
-        let elastic = self.plan.surfaces[contact.surface].material.restitution.coefficient() == 1.0;
+        let elastic = self.surfaces[contact.surface].material.restitution.coefficient() == 1.0;
         let endless = elastic && self.low_hops > PATIENCE_WITH_LOW_HOPS && rate <= self.plan.rest.low_hop(pressed);
         let over = rate <= thresholds.speed || height <= resolved;
         pressed > 0.0 && ((over && (loses || hidden)) || ((brief || endless) && loses))
@@ -144,7 +144,7 @@ impl<O: Observer> Walk<'_, O> {
     /// Whether bouncing on `contact` takes energy. What loses nothing bounces for ever. The air takes from each hop; an elastic surface
     /// with friction loses in a corner, without end.
     fn takes_energy(&self, contact: &Contact) -> bool {
-        let material = &self.plan.surfaces[contact.surface].material;
+        let material = &self.surfaces[contact.surface].material;
         let smooth = material.friction.in_contact() == ContactFriction::Sliding(0.0);
         material.restitution.coefficient() < 1.0 || !smooth || !self.forces.are_constant()
     }
@@ -177,10 +177,13 @@ impl<O: Observer> Walk<'_, O> {
     pub(super) fn end_settling(&mut self) {
         if let Some(settling) = self.settling.take() {
             let contact = self.contacts[settling.contact];
-            let material = &self.plan.surfaces[contact.surface].material;
+            let material = &self.surfaces[contact.surface].material;
             let c_r = material.restitution.coefficient();
             let before = self.state.velocity;
-            self.state.velocity = material.friction.slow_to_the_end(before, settling.closing, c_r);
+            match material.friction {
+                Friction::Grip(grip) => self.grip_to_the_end(&contact, &grip, settling.closing, c_r),
+                _ => self.state.velocity = material.friction.slow_to_the_end(before, settling.closing, c_r),
+            }
             self.begin_sliding(before);
         }
     }

@@ -3,11 +3,14 @@
 use super::frame::Frame;
 use super::{Bvh, Child, Node, WIDTH};
 use crate::bounds::Aabb;
+use rayon::prelude::*;
 
 /// A group of up to this many items is not split while there is room in the node.
 const LEAF: usize = 2;
 /// A group of up to this many items is not worth a node of its own.
 const LARGEST_LEAF: usize = 4;
+/// A group of up to this many items is not worth the while of several cores.
+const ON_ONE_CORE: usize = 4096;
 /// Bins an axis is cut into.
 const BINS: usize = 16;
 /// Levels by the heuristic; below, halves by count, at most log2(2^29) / log2(8) levels more.
@@ -78,59 +81,74 @@ impl Group {
     }
 }
 
-pub(super) fn build(count: usize, box_of: impl Fn(usize) -> Aabb) -> Bvh {
+pub(super) fn build(count: usize, box_of: impl Fn(usize) -> Aabb + Sync) -> Bvh {
     // Infinite sides come in to the largest number: no finite segment can tell.
     let finite = |b: &Aabb| {
         let clamp = |c: f64| c.clamp(-f64::MAX, f64::MAX);
         Aabb::of_points(&[b.min().map(clamp), b.max().map(clamp)])
     };
-    let all = || (0..count.min(Child::MOST_ITEMS)).map(|i| (i as u32, box_of(i)));
-    let kept = || all().filter(|(_, b)| !b.is_empty()).map(|(i, b)| (i, finite(&b)));
-    let bounds = kept().fold(Aabb::empty(), |all, (_, b)| all.union(&b));
+    let kept = || {
+        let all = (0..count.min(Child::MOST_ITEMS)).into_par_iter().with_min_len(ON_ONE_CORE);
+        all.map(|i| (i as u32, box_of(i))).filter(|(_, b)| !b.is_empty()).map(|(i, b)| (i, finite(&b)))
+    };
+    let bounds = kept().map(|(_, b)| b).reduce(Aabb::empty, |all, b| all.union(&b));
     let frame = Frame::of(&bounds);
-    let items = kept()
+    let mut items: Vec<Item> = kept()
         .map(|(id, b)| {
             let (lo, hi) = frame.item_box(&b);
             Item { bounds: Box32 { lo, hi }, id }
         })
         .collect();
-    let mut builder = Builder { items, nodes: Vec::new(), levels: 0 };
-    if !builder.items.is_empty() {
-        builder.node(Group::of(&builder.items, 0, builder.items.len()), 1);
-    }
-    builder.nodes.shrink_to_fit();
+    let all = Group::of(&items, 0, items.len());
+    let mut whole = if items.is_empty() { Part::default() } else { Part::of(&mut items, 0, all, 1) };
+    whole.nodes.shrink_to_fit();
     Bvh {
         bounds,
         frame,
-        items: builder.items.iter().map(|item| item.id).collect(),
-        nodes: builder.nodes,
+        items: items.iter().map(|item| item.id).collect(),
+        nodes: whole.nodes,
         // Each level leaves all children but one pending.
-        stack: (WIDTH - 1) * builder.levels + WIDTH,
+        stack: (WIDTH - 1) * whole.levels + WIDTH,
     }
 }
 
-struct Builder {
-    items: Vec<Item>,
+/// A part of the tree: its nodes, the root first and counted from it, and how many levels it goes down to from the top of the whole.
+#[derive(Default)]
+struct Part {
     nodes: Vec<Node>,
     levels: usize,
 }
 
-impl Builder {
-    /// Makes the node for `all` and what is below; returns its number.
-    fn node(&mut self, all: Group, level: usize) -> u32 {
+impl Part {
+    /// The part over `items`, of which the first has the place `first` in the whole. `all` are all of them.
+    fn of(items: &mut [Item], first: usize, all: Group, level: usize) -> Self {
+        let mut part = Self::default();
+        part.add(items, first, all, level);
+        part
+    }
+
+    /// Adds the node for `all` and what is below; returns its number.
+    fn add(&mut self, items: &mut [Item], first: usize, all: Group, level: usize) -> u32 {
         self.levels = self.levels.max(level);
-        let (groups, count) = self.groups(all, level);
+        let (groups, count) = groups(items, all, level);
         let number = self.nodes.len();
         self.nodes.push(Node {
             planes: std::array::from_fn(|i| [if i < 3 { f32::INFINITY } else { f32::NEG_INFINITY }; WIDTH]),
             child: [Child::default(); WIDTH],
         });
+        let mut below = if all.len() > ON_ONE_CORE {
+            Self::in_parallel(items, first, &groups[..count], level)
+        } else {
+            std::array::from_fn(|_| None)
+        };
         for (j, group) in groups[..count].iter().enumerate() {
             let child = if group.len() <= LARGEST_LEAF {
-                self.items[group.start..group.end].sort_unstable_by_key(|item| item.id);
-                Child::leaf(group.start, group.len())
+                items[group.start..group.end].sort_unstable_by_key(|item| item.id);
+                Child::leaf(first + group.start, group.len())
+            } else if let Some(part) = below[j].take() {
+                Child(self.append(part))
             } else {
-                Child(self.node(*group, level + 1))
+                Child(self.add(items, first, *group, level + 1))
             };
             let node = &mut self.nodes[number];
             node.child[j] = child;
@@ -142,29 +160,61 @@ impl Builder {
         number as u32
     }
 
-    /// Cuts `all` into up to eight groups, the one most likely to be met first.
-    fn groups(&mut self, all: Group, level: usize) -> ([Group; WIDTH], usize) {
-        let mut groups = [all; WIDTH];
-        let mut count = 1;
-        while count < WIDTH {
-            let by_count = level > HEURISTIC_LEVELS;
-            let weight = |g: &Group| if by_count { g.len() as f32 } else { g.bounds.area() };
-            let Some(chosen) = (0..count)
-                .filter(|&k| groups[k].len() > LEAF)
-                .max_by(|&k, &l| weight(&groups[k]).total_cmp(&weight(&groups[l])).then(l.cmp(&k)))
-            else {
-                break;
-            };
-            let Group { start, end, bounds } = groups[chosen];
-            let items = &mut self.items[start..end];
-            let cut = if by_count { None } else { best_cut(items, &bounds) };
-            let middle = start + if let Some(cut) = cut { cut.divide(items) } else { halve(items) };
-            groups[chosen] = Group::of(&self.items, start, middle);
-            groups[count] = Group::of(&self.items, middle, end);
-            count += 1;
+    /// The parts of the groups that get nodes, each on whatever core is free; the same ones as one after the other.
+    fn in_parallel(items: &mut [Item], first: usize, groups: &[Group], level: usize) -> [Option<Self>; WIDTH] {
+        let mut order: Vec<usize> = (0..groups.len()).collect();
+        order.sort_unstable_by_key(|&j| groups[j].start);
+        let mut tasks = Vec::with_capacity(groups.len());
+        let mut rest = items;
+        for j in order {
+            let (own, others) = rest.split_at_mut(groups[j].len());
+            tasks.push((j, own));
+            rest = others;
         }
-        (groups, count)
+        let one = |(j, own): (usize, &mut [Item])| {
+            let all = Group { start: 0, end: own.len(), bounds: groups[j].bounds };
+            (own.len() > LARGEST_LEAF).then(|| (j, Self::of(own, first + groups[j].start, all, level + 1)))
+        };
+        let parts: Vec<_> = tasks.into_par_iter().filter_map(one).collect();
+        let mut by_group = std::array::from_fn(|_| None);
+        parts.into_iter().for_each(|(j, part)| by_group[j] = Some(part));
+        by_group
     }
+
+    /// Takes over the nodes of `part`; returns the number of its root.
+    fn append(&mut self, part: Self) -> u32 {
+        let root = self.nodes.len() as u32;
+        self.levels = self.levels.max(part.levels);
+        self.nodes.extend(part.nodes.into_iter().map(|mut node| {
+            node.child.iter_mut().for_each(|child| *child = child.after(root));
+            node
+        }));
+        root
+    }
+}
+
+/// Cuts `all` into up to eight groups, the one most likely to be met first.
+fn groups(items: &mut [Item], all: Group, level: usize) -> ([Group; WIDTH], usize) {
+    let mut groups = [all; WIDTH];
+    let mut count = 1;
+    while count < WIDTH {
+        let by_count = level > HEURISTIC_LEVELS;
+        let weight = |g: &Group| if by_count { g.len() as f32 } else { g.bounds.area() };
+        let Some(chosen) = (0..count)
+            .filter(|&k| groups[k].len() > LEAF)
+            .max_by(|&k, &l| weight(&groups[k]).total_cmp(&weight(&groups[l])).then(l.cmp(&k)))
+        else {
+            break;
+        };
+        let Group { start, end, bounds } = groups[chosen];
+        let own = &mut items[start..end];
+        let cut = if by_count { None } else { best_cut(own, &bounds) };
+        let middle = start + if let Some(cut) = cut { cut.divide(own) } else { halve(own) };
+        groups[chosen] = Group::of(items, start, middle);
+        groups[count] = Group::of(items, middle, end);
+        count += 1;
+    }
+    (groups, count)
 }
 
 /// How an axis is cut into bins.

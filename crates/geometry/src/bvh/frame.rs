@@ -1,7 +1,7 @@
 //! The tree's own coordinates, and queries in them with room for every rounding.
 
 use super::{FatSegment, WIDTH};
-use crate::bounds::Aabb;
+use crate::bounds::{Aabb, largest, least};
 use crate::rounding::{UNIT_ROUNDOFF, gamma, segment_bound, segment_bound_f32};
 
 /// A margin beyond this is so much larger than the tree, which has a half extent of 1, that no box can be told apart.
@@ -69,15 +69,17 @@ impl Frame {
         if !(from.coords.iter().chain(&to.coords).all(|c| c.is_finite()) && radius.is_finite()) {
             return (!bounds.is_empty()).then_some(all);
         }
-        if !bounds.intersects(&Aabb::of_points([from, to]).inflate(radius.max(0.0))) {
-            return None;
-        }
         let (a, b) = (self.local(from), self.local(to));
-        let reach = a.iter().chain(&b).fold(0.0, |m: f64, c| m.max(c.abs()));
+        let reach = a.iter().chain(&b).fold(0.0, |m: f64, c| largest(m, c.abs()));
         let radius = radius.max(0.0) * self.scale + segment_bound(reach);
         // Also true where `reach` or the radius is no longer finite.
         if !(radius <= HOPELESS && reach <= HOPELESS / UNIT_ROUNDOFF) {
             return Some(all);
+        }
+        // Boxes of the tree lie within NEAR at every scale.
+        let off = |i: usize| least(a[i], b[i]) - radius > NEAR || largest(a[i], b[i]) + radius < -NEAR;
+        if off(0) || off(1) || off(2) {
+            return None;
         }
         let d = [0, 1, 2].map(|i| b[i] - a[i]);
         if reach <= NEAR {
@@ -121,7 +123,7 @@ fn clip(a: &[f64; 3], d: &[f64; 3], bound: f64) -> Option<(f64, f64)> {
 impl LocalSegment {
     /// From `a` at s = `start` to `b` at s = `end`.
     fn new(start: f64, end: f64, a: [f64; 3], b: [f64; 3], radius: f64) -> Self {
-        let reach = a.iter().chain(&b).fold(0.0, |m: f64, c| m.max(c.abs()));
+        let reach = a.iter().chain(&b).fold(0.0, |m: f64, c| largest(m, c.abs()));
         let radius = round_up(radius + segment_bound_f32(reach, radius));
         let (a, b) = (a.map(|c| c as f32), b.map(|c| c as f32));
         let step = [0, 1, 2].map(|i| b[i] - a[i]);
@@ -151,11 +153,11 @@ impl LocalSegment {
                 exit[j] = if w < exit[j] { w } else { exit[j] };
             }
         }
-        let mut met = 0;
+        let mut bits = [0_u32; WIDTH];
         for j in 0..WIDTH {
-            met |= u32::from(entry[j] <= exit[j]) << j;
+            bits[j] = if entry[j] <= exit[j] { 1 << j } else { 0 };
         }
-        (entry, met)
+        (entry, bits.iter().fold(0, |met, bit| met | bit))
     }
 
     /// The caller's limit of s as one of this part, rounded up.
@@ -185,6 +187,7 @@ fn round_up(v: f64) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::Point3;
 
     #[test]
     fn f32_is_rounded_outwards() {
@@ -212,5 +215,35 @@ mod tests {
         let (s0, s1) = clip(&[-5.0, 0.0, 0.0], &[10.0, 0.0, 0.0], 1.0).unwrap();
         assert!(s0 <= 0.4 && 0.6 <= s1 && s1 - s0 < 0.2 + 1e-14);
         assert_eq!(clip(&[-5.0, -5.0, 0.0], &[10.0, 2.0, 0.0], 1.0), None);
+    }
+
+    #[test]
+    fn everything_comes_to_lie_within_one() {
+        let bounds = Aabb::of_points(&[Point3::new(-5.0, -7.0, -6.0), Point3::new(3.0, 2.0, -1.0)]);
+        let (lo, hi) = Frame::of(&bounds).item_box(&bounds);
+        assert!(lo.iter().chain(&hi).all(|c| c.abs() <= 1.0), "{lo:?} {hi:?}");
+        assert!((0..3).any(|i| hi[i] - lo[i] > 1.0), "and not in a small part of it");
+    }
+
+    #[test]
+    fn a_query_is_larger_than_its_box_even_where_f32_has_its_sides() {
+        let frame = Frame::of(&Aabb::of_points(&[Point3::new(-1.0, -1.0, -1.0), Point3::new(1.0, 1.0, 1.0)]));
+        for c in [-0.5, 0.0, 0.5] {
+            let point = Point3::new(c, c, c);
+            let ((lo, hi), (least, most)) =
+                (frame.outer_box(&Aabb::of_points(&[point])), frame.item_box(&Aabb::of_points(&[point])));
+            assert!((0..3).all(|i| lo[i] < least[i] && most[i] < hi[i]), "{c}: {lo:?} {hi:?}");
+        }
+    }
+
+    #[test]
+    fn a_limit_in_the_part_is_the_caller_s_and_not_below_it() {
+        let part = LocalSegment::new(0.25, 0.75, [0.0; 3], [0.5; 3], 0.0);
+        for (s, limit) in [(0.375, 0.25f32), (0.5, 0.5), (0.625, 0.75)] {
+            assert!((limit.next_up()..=limit.next_up().next_up()).contains(&part.local_limit(s)), "{s}");
+        }
+        assert_eq!([0.75, 9.0, f64::INFINITY, f64::NAN].map(|s| part.local_limit(s)), [1.0; 4]);
+        assert!(part.local_limit(0.25) >= 0.0, "what is entered at the start is still of interest");
+        assert_eq!([0.2, -1.0].map(|s| part.local_limit(s)), [-1.0; 2]);
     }
 }

@@ -182,6 +182,8 @@ fn h13_huge_segments_lose_nothing() {
     }
     let endless = FatSegment { from: Point3::origin(), to: Point3::new(f64::INFINITY, f64::NAN, 0.0), radius: 0.0 };
     assert_eq!(collect(&tree, &endless).len(), boxes.len());
+    let nowhere = FatSegment { from: Point3::new(9.0, 9.0, 9.0), to: Point3::new(9.0, 9.0, 9.0), radius: f64::NAN };
+    assert_eq!(collect(&tree, &nowhere).len(), boxes.len());
 }
 
 #[test]
@@ -228,6 +230,12 @@ fn clusters_within_clusters_do_not_make_it_deep() {
     assert!(tree.stack <= 7 * 27 + 8, "{}", tree.stack);
     let segment = FatSegment { from: Point3::origin(), to: Point3::origin(), radius: 0.0 };
     assert_eq!(collect(&tree, &segment).len(), 4000);
+    // More is pending here than there is room for without a heap.
+    let mut met = 0;
+    tree.visit_box(&boxed(&[Point3::origin()]), |_| met += 1);
+    assert_eq!(met, 4000);
+    let mirrored: Vec<_> = boxes.iter().map(|b| boxed(&[-*b.min(), -*b.max()])).collect();
+    assert_eq!(collect(&Bvh::build(&mirrored), &segment).len(), 4000);
 }
 
 #[test]
@@ -235,4 +243,52 @@ fn memory_is_below_forty_bytes_an_item() {
     let boxes = terrain(128);
     let per_item = Bvh::build(&boxes).bytes() as f64 / boxes.len() as f64;
     assert!(per_item < 40.0, "{per_item}");
+}
+
+#[test]
+fn what_lies_in_a_row_is_shown_front_to_back() {
+    let boxes: Vec<_> = (0..64)
+        .map(|k| boxed(&[Point3::new(f64::from(k), 0.0, 0.0), Point3::new(f64::from(k) + 0.5, 1.0, 1.0)]))
+        .collect();
+    let tree = Bvh::build(&boxes);
+    let (left, right) = (Point3::new(-9.0, 0.5, 0.5), Point3::new(99.0, 0.5, 0.5));
+    let shown = |from, to| {
+        let mut shown = Vec::new();
+        tree.visit(&FatSegment { from, to, radius: 0.0 }, |item| {
+            shown.push(item as i32);
+            f64::INFINITY
+        });
+        shown
+    };
+    // To within the four items of a leaf.
+    let disorder = |shown: Vec<i32>| shown.iter().zip(0..).map(|(item, k)| (item - k).abs()).max();
+    assert!(disorder(shown(left, right)) < Some(4));
+    assert!(disorder(shown(right, left).into_iter().map(|item| 63 - item).collect()) < Some(4));
+    let mut first = Vec::new();
+    let work = tree.visit(&FatSegment { from: left, to: right, radius: 0.0 }, |item| {
+        first.push(item);
+        9.25 / 108.0
+    });
+    assert!(first.len() <= 4 && work <= 2, "beyond the limit nothing is looked at: {first:?}, {work} nodes");
+}
+
+#[test]
+fn a_box_finds_little_that_it_does_not_meet() {
+    let boxes = terrain(16);
+    let tree = Bvh::build(&boxes);
+    let mut met = Vec::new();
+    let visited = tree.visit_box(&boxes[100], |item| met.push(item));
+    let touching = boxes.iter().filter(|b| b.intersects(&boxes[100])).count();
+    assert!(met.len() <= touching + 4 && (2..16).contains(&visited), "{} for {touching}, {visited} nodes", met.len());
+}
+
+#[test]
+fn a_tree_says_how_much_it_holds() {
+    let one = boxed(&[Point3::origin()]);
+    for n in 1..4 {
+        let tree = Bvh::build(&vec![one; n]);
+        assert_eq!((tree.len(), tree.is_empty()), (n, false));
+        assert_eq!(tree.bytes(), 7 * 8 * 4 + 4 * n, "six planes and a child, eight of each, and the items");
+    }
+    assert_eq!((Bvh::build(&[]).len(), Bvh::build(&[]).bytes()), (0, 0));
 }

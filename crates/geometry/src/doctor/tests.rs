@@ -92,3 +92,11 @@ fn long_lists_are_cut_short_in_the_text_only() {
     let text = "the edge from vertex 0 to 1 has 10 faces: 0, 1, 2, 3, 4, 5, 6, 7 and 2 more";
     assert_eq!(crowded.to_string(), text);
 }
+
+#[test]
+fn open_sides_are_those_without_a_neighbour() {
+    let (vertices, mut faces) = tetrahedron();
+    faces.remove(1);
+    let open = diagnose(&vertices, &faces).into_iter().find(|f| matches!(f, Finding::Open { .. }));
+    assert_eq!(open, Some(Finding::Open { sides: vec![(0, 2), (1, 2), (2, 1)] }));
+}

@@ -62,6 +62,36 @@ fn what_rounding_may_leave_of_a_plane_is_no_fold_and_more_is() {
 }
 
 #[test]
+fn what_rounding_may_leave_depends_on_the_heights_over_the_edge_at_every_scale() {
+    for k in [-300, 0, 300] {
+        // An edge of 1 and heights of 8: the bound is 28 u (8 / 8 + 8 / 8), which is a sine of 6.2e-15.
+        let fold = |z: f64| {
+            let [a, b, c, d] = [[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-8.0, 0.0, 0.0], [8.0, 0.0, 8.0 * z]];
+            let scaled = points(&[a, b, c, d]).into_iter().map(|p| p * 2.0_f64.powi(k)).collect();
+            Mesh::new(scaled, vec![[0, 1, 2], [1, 0, 3]]).unwrap().fold(0, 0)
+        };
+        assert_eq!([fold(0.0), fold(4e-15), fold(-4e-15)], [Fold::Flat; 3], "2^{k}");
+        assert_eq!([fold(1e-14), fold(-1e-14)], [Fold::Concave, Fold::Convex], "2^{k}");
+    }
+}
+
+#[test]
+fn needles_of_one_plane_are_flat_by_an_exact_decision() {
+    // So thin that rounding is never the reason, in each plane across an axis.
+    for axis in 0..3 {
+        let across = |x: f64, y: f64| {
+            let mut p = [0.5; 3];
+            (p[(axis + 1) % 3], p[(axis + 2) % 3]) = (x, y);
+            p
+        };
+        let vertices =
+            |side: f64| points(&[across(0.0, 0.0), across(1.0, 0.0), across(0.5, 1e-7), across(0.5, side * 1e-7)]);
+        let fold = |side: f64| Mesh::new(vertices(side), vec![[0, 1, 2], [1, 0, 3]]).unwrap().fold(0, 0);
+        assert_eq!((fold(-1.0), fold(2.0)), (Fold::Flat, Fold::Rim), "axis {axis}");
+    }
+}
+
+#[test]
 fn the_surface_ends_where_the_neighbour_has_no_area_or_lies_back_on_it() {
     assert_eq!(hinge([0.0, 0.5, 0.0], [1, 0, 3]).fold(0, 0), Fold::Rim);
     assert_eq!(hinge([-3.0, 0.5, 0.0], [1, 0, 3]).fold(0, 0), Fold::Rim);
@@ -80,6 +110,8 @@ fn a_face_of_no_area_has_no_normal_and_does_no_harm() {
     // Face 3 has the corners of face 1.
     assert_eq!(m.vertex_faces(0), [0, 1, 4]);
     assert_eq!(m.vertex_faces(3), [2, 4]);
+    let twice = Mesh::new(m.vertices().to_vec(), vec![[0, 1, 0], [0, 1, 3]]).unwrap();
+    assert_eq!((twice.vertex_faces(0), twice.vertex_faces(1)), (&[0, 1][..], &[0, 1][..]), "each face once");
     for f in 0..5 {
         for side in 0..3 {
             assert!(matches!(m.fold(f, side), Fold::Rim | Fold::NonManifold));
@@ -144,6 +176,10 @@ fn edges_and_used_vertices_have_one_owner_each() {
         keys.sort_unstable();
         keys.dedup();
         assert_eq!(owned_edges, keys.len());
+        for (f, i) in places.clone() {
+            let (face, side) = m.edge(f, i).owner;
+            assert!(m.owns_edge(face, side) && m.edge(face, side) == m.edge(f, i));
+        }
         let owned_vertices = places.filter(|&(f, i)| m.owns_vertex(f, i)).count();
         assert_eq!(owned_vertices, m.vertices().len());
     }
@@ -245,4 +281,33 @@ fn a_face_takes_at_most_a_hundred_bytes() {
     let m = terrain(128);
     let per_face = m.bytes() as f64 / m.faces().len() as f64;
     assert!(per_face <= 100.0, "{per_face}");
+    // Corners, normals and half-edges of each face; the start of each vertex's faces and the end; those faces; the tree.
+    let (faces, vertices) = (m.faces().len(), m.vertices().len());
+    assert_eq!(m.bytes(), (12 + 24 + 12) * faces + 4 * (vertices + 1) + 12 * faces + m.bvh().bytes());
+}
+
+#[test]
+fn a_vertex_is_level_where_all_its_edges_are_flat() {
+    // A fan around vertex 0, which is another corner of each face; its rim is not flat, but does not end at vertex 0.
+    let around = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
+    let fan = |height: f64| {
+        let rim = around.map(|[x, y]| [x, y, 0.0]);
+        Mesh::new(points(&[&[[0.0, 0.0, height]], &rim[..]].concat()), vec![[0, 1, 2], [3, 0, 2], [3, 4, 0], [0, 4, 1]])
+    };
+    let (flat, raised) = (fan(0.0).unwrap(), fan(0.5).unwrap());
+    assert!(flat.is_level(0) && (1..5).all(|rim| !flat.is_level(rim)));
+    assert!((0..5).all(|v| !raised.is_level(v)));
+    // Wound against each other, so that both sides of the rim end at vertex 0 and none begins there.
+    let against =
+        Mesh::new(points(&[[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]]), vec![[0, 2, 1], [0, 2, 3]]);
+    assert!(!against.unwrap().is_level(0));
+    // One fold of several is enough.
+    let (vertices, faces) = cube();
+    let cube = Mesh::new(vertices, faces).unwrap();
+    assert!((0..8).all(|v| !cube.is_level(v)));
+}
+
+#[test]
+fn the_half_edges_of_the_most_faces_leave_three_bits() {
+    assert!(3 * MOST_FACES < 1 << 29 && 3 * (MOST_FACES + 1) >= 1 << 29);
 }

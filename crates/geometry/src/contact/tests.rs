@@ -1,0 +1,63 @@
+//! Contacts of one triangle that its support planes decide.
+
+use super::*;
+use crate::rounding::contact_doubt;
+
+/// A large triangle in the plane z = 0.
+const FLOOR: [Point3<f64>; 3] = [Point3::new(-9.0, -9.0, 0.0), Point3::new(9.0, -9.0, 0.0), Point3::new(0.0, 9.0, 0.0)];
+
+fn contact(path: &Path, holds: &[Hold], triangle: &[Point3<f64>; 3], from: f64, to: f64) -> Option<f64> {
+    let mut rounds = 0;
+    let found = first_contact(&MovingBall { path, radius: 1.0, holds }, triangle, from, to, &mut rounds);
+    assert!(rounds > 0 || from > to || holds.iter().any(|hold| hold.until > to), "a plane was looked at");
+    match found {
+        Contact::Miss => None,
+        Contact::At { f, .. } => Some(f),
+    }
+}
+
+/// Up from the floor, at its height again at 1/2.
+fn hop() -> Path {
+    Path::parabola(Point3::new(0.0, 0.0, 1.0), Vector3::new(0.0, 0.0, 4.0), Vector3::new(0.0, 0.0, -8.0))
+}
+
+#[test]
+fn a_contact_counts_up_to_the_end_asked_for_and_from_the_start() {
+    let near = |f: Option<f64>| f.is_some_and(|f| f <= 0.5 && 0.5 - f <= contact_doubt(10.0));
+    assert!(near(contact(&hop(), &[], &FLOOR, 0.0, 1.0)) && near(contact(&hop(), &[], &FLOOR, 0.0, 0.5)));
+    assert_eq!(contact(&hop(), &[], &FLOOR, 0.0, 0.25), None);
+    assert_eq!(contact(&hop(), &[], &FLOOR, 0.625, 0.625), Some(0.625), "in it and falling: now");
+    assert_eq!(contact(&hop(), &[], &FLOOR, 0.625, 0.5), None);
+}
+
+#[test]
+fn what_a_hold_hides_is_not_met_before_the_path_is_back() {
+    let hold = |until| Hold { normal: Vector3::z(), point: Point3::new(2.0, 1.0, 0.0), slack: 0.0, until, face: None };
+    // Believed to the letter, even when it promises too much.
+    assert_eq!(contact(&hop(), &[hold(0.625)], &FLOOR, 0.0, 1.0), Some(0.625));
+    assert_eq!(contact(&hop(), &[hold(f64::INFINITY)], &FLOOR, 0.0, 1.0), None);
+    assert_eq!(contact(&hop(), &[hold(0.25)], &FLOOR, 0.625, 1.0), Some(0.625), "a hold that is over says nothing");
+    // A triangle that stands out of the plane by more than its slack is not hidden.
+    let mut tilted = FLOOR;
+    tilted[0].z = 0.125;
+    let f = contact(&hop(), &[hold(0.625)], &tilted, 0.0, 1.0).unwrap();
+    assert!(f < 0.5, "{f}");
+    let slack = Hold { slack: 0.25, ..hold(0.625) };
+    assert_eq!(contact(&hop(), &[slack], &tilted, 0.0, 1.0), Some(0.625));
+}
+
+#[test]
+fn a_centre_on_the_triangle_leaves_it_whichever_way_it_goes() {
+    let on = Point3::new(0.5, 0.25, 0.0);
+    let point = [on; 3];
+    for v in [Vector3::z(), -Vector3::z(), Vector3::x(), -Vector3::x(), Vector3::zeros()] {
+        for triangle in [FLOOR, [FLOOR[0], FLOOR[2], FLOOR[1]], point] {
+            assert_eq!(contact(&Path::line(on, v), &[], &triangle, 0.0, 1.0), None, "along {v:?}");
+        }
+    }
+    // Out of it and back: the plane across the triangle is met again.
+    let back = Path::parabola(on, Vector3::new(1.0, 0.0, 8.0), Vector3::new(0.0, 0.0, -8.0));
+    let f = contact(&back, &[], &FLOOR, 0.0, 1.0).unwrap();
+    let want = 0.5 + 0.125f64.sqrt();
+    assert!(f <= want && want - f <= contact_doubt(20.0), "{f} for {want}");
+}

@@ -1,0 +1,181 @@
+//! Times the same work by Carom, rapier3d and parry3d, in one run on one machine, and prints a table in Markdown.
+//!
+//! `carom-peers [BALLS]`: so many balls on the terrain for rapier, which takes a hundred times as long for each.
+
+mod parry;
+mod rapier;
+
+use carom_benches::cases::ball_and_triangle;
+use carom_benches::clock::{median, peak_memory, seconds};
+use carom_benches::random::Random;
+use carom_benches::scenes::{self, Result};
+use carom_benches::terrain::{HALF, SQUARES, height, terrain};
+use carom_dynamics::counters::Counters;
+use carom_dynamics::plan::Plan;
+use carom_dynamics::simulate::simulate;
+use carom_geometry::contact::{MovingBall, first_contact};
+use carom_geometry::mesh::Mesh;
+use carom_geometry::sweep::Work;
+use nalgebra::{Point3, Vector3};
+use std::hint::black_box;
+
+/// Runs of which the median counts.
+const RUNS: usize = 5;
+
+/// Balls on the terrain, by Carom.
+const BALLS: usize = 10_000;
+
+/// A row of the table: the work, its unit, and what it takes.
+struct Row {
+    work: &'static str,
+    unit: &'static str,
+    carom: f64,
+    peer: &'static str,
+    theirs: Option<f64>,
+}
+
+fn main() -> Result<()> {
+    let rapier_balls = std::env::args().nth(1).map_or(Ok(500), |n| n.parse())?;
+    let rows = [one_ball()?, terrain_balls(rapier_balls)?, room()?, segments()?, one_triangle(), prediction()?];
+    println!("| work | Carom | peer | ratio |\n|---|---|---|---|");
+    for Row { work, unit, carom, peer, theirs } in rows {
+        let figure = |x: f64| if x < 10.0 { format!("{x:.2}") } else { format!("{x:.0}") };
+        let (peer, ratio) = match theirs {
+            Some(theirs) => (format!("{peer}: {} {unit}", figure(theirs)), figure(theirs / carom)),
+            None => ("".to_owned(), "".to_owned()),
+        };
+        println!("| {work} | {} {unit} | {peer} | {ratio} |", figure(carom));
+    }
+    if let Some(bytes) = peak_memory() {
+        eprintln!("peak memory {} MB", bytes / 1_000_000);
+    }
+    Ok(())
+}
+
+/// All balls of a plan, one after the other: the time, and what was done.
+fn run(plan: &Plan) -> (f64, Counters) {
+    let mut counters = Counters::default();
+    let time = median(RUNS, || {
+        counters = Counters::default();
+        plan.balls().iter().for_each(|ball| counters += simulate(plan, ball, &mut ()).counters);
+    });
+    (time, counters)
+}
+
+fn one_ball() -> Result<Row> {
+    const DURATION: f64 = 3.0;
+    const TIMES: usize = 1000;
+    let plan = Plan::new(&scenes::one_ball(DURATION, 0.8)?)?;
+    let ball = &plan.balls()[0];
+    let time = median(RUNS, || (0..TIMES).for_each(|_| _ = black_box(simulate(&plan, ball, &mut ()))));
+    let theirs = rapier::one_ball(DURATION, 1.0 / 60.0);
+    Ok(Row {
+        work: "one ball on a plane, 3 s",
+        unit: "us per simulated second",
+        carom: 1.0e6 * time / (TIMES as f64 * DURATION),
+        peer: "rapier3d at 1/60 s",
+        theirs: Some(1.0e6 * theirs / DURATION),
+    })
+}
+
+fn terrain_balls(rapier_balls: usize) -> Result<Row> {
+    const DURATION: f64 = 2.0;
+    let plan = Plan::new(&scenes::balls_on_terrain(SQUARES, BALLS, 0.7, DURATION)?)?;
+    let (mut through, mut rows) = (0, 0.0);
+    let time = median(RUNS, || {
+        (through, rows) = (0, 0.0);
+        for ball in plan.balls() {
+            let end = simulate(&plan, ball, &mut ()).state.position;
+            // Off the edge of the terrain there is nothing to fall through.
+            let on = end.x.abs() < HALF && end.y.abs() < HALF;
+            through += usize::from(on && end.z < height(end.x, end.y));
+            rows += 1.0;
+        }
+    });
+    eprintln!("terrain: {through} of {BALLS} balls through the surface");
+    let theirs = rapier::balls_on_terrain(rapier_balls, DURATION, 1.0 / 240.0)?;
+    Ok(Row {
+        work: "10 000 balls on 200 978 triangles, 2 s",
+        unit: "us per ball-second",
+        carom: 1.0e6 * time / (rows * DURATION),
+        peer: "rapier3d, ccd, internal edges fixed, at 1/240 s",
+        theirs: Some(1.0e6 * theirs / (rapier_balls as f64 * DURATION)),
+    })
+}
+
+fn room() -> Result<Row> {
+    let plan = Plan::new(&scenes::balls_in_room(BALLS, 10.0)?)?;
+    let (time, counters) = run(&plan);
+    let carom = 1.0e9 * time / counters.impacts as f64;
+    Ok(Row { work: "balls in a room of six elastic walls", unit: "ns per impact", carom, peer: "", theirs: None })
+}
+
+fn segments() -> Result<Row> {
+    let (vertices, faces) = terrain(SQUARES);
+    let theirs = parry::Obstacle::new(&vertices, &faces)?;
+    let mesh = Mesh::new(vertices, faces)?;
+    let mut random = Random::new(3);
+    let segments: Vec<(Point3<f64>, Vector3<f64>)> = (0..100_000)
+        .map(|_| {
+            let (x, y) = (random.within(1.0 - HALF, HALF - 1.0), random.within(1.0 - HALF, HALF - 1.0));
+            let along = random.vector(0.6);
+            (Point3::new(x, y, height(x, y) + 0.5), Vector3::new(along.x, along.y, -1.0))
+        })
+        .collect();
+    let ours = || {
+        let hits = |(from, along): &(Point3<f64>, Vector3<f64>)| {
+            mesh.first_pierced(from, &(from + along), &mut Work::default()).is_some()
+        };
+        segments.iter().filter(|s| hits(s)).count()
+    };
+    let others = || segments.iter().filter(|(from, along)| theirs.segment(from, along).is_some()).count();
+    eprintln!("segments: Carom meets {}, parry {} of {}", ours(), others(), segments.len());
+    // By turns, so that both have the same neighbours on the machine.
+    let (mut a, mut b) = (Vec::new(), Vec::new());
+    for _ in 0..RUNS {
+        a.push(seconds(|| _ = black_box(ours())));
+        b.push(seconds(|| _ = black_box(others())));
+    }
+    a.sort_by(f64::total_cmp);
+    b.sort_by(f64::total_cmp);
+    let each = |times: &[f64]| 1.0e9 * times[RUNS / 2] / segments.len() as f64;
+    Ok(Row {
+        work: "short segments against 200 978 triangles, random order, certified",
+        unit: "ns",
+        carom: each(&a),
+        peer: "parry3d-f64, not certified",
+        theirs: Some(each(&b)),
+    })
+}
+
+fn one_triangle() -> Row {
+    const TIMES: usize = 200;
+    let cases = ball_and_triangle();
+    let mut ours: Vec<f64> = Vec::new();
+    let mut others: Vec<f64> = Vec::new();
+    for case in &cases {
+        let ball = MovingBall { path: &case.path, radius: case.radius, holds: &[] };
+        let each = |work: &dyn Fn()| 1.0e9 * median(3, || (0..TIMES).for_each(|_| work())) / TIMES as f64;
+        ours.push(each(&|| _ = black_box(first_contact(black_box(&ball), &case.triangle, 0.0, 1.0, &mut 0))));
+        if case.acceleration == Vector3::zeros() {
+            others.push(each(&|| _ = black_box(parry::ball_and_triangle(case))));
+        }
+    }
+    ours.sort_by(f64::total_cmp);
+    others.sort_by(f64::total_cmp);
+    Row {
+        work: "a ball against a triangle, median of the cases with exact answers, certified",
+        unit: "ns",
+        carom: ours[ours.len() / 2],
+        peer: "parry3d-f64, straight ones only",
+        theirs: Some(others[others.len() / 2]),
+    }
+}
+
+fn prediction() -> Result<Row> {
+    const TIMES: usize = 100;
+    let plan = Plan::new(&scenes::predicted(TIMES)?)?;
+    let (time, _) = run(&plan);
+    let carom = 1.0e6 * time / TIMES as f64;
+    Ok(Row { work: "one ball 8 s ahead on 7938 triangles", unit: "us", carom, peer: "", theirs: None })
+}
