@@ -3,6 +3,7 @@
 use carom_dynamics::counters::Counters;
 use carom_dynamics::energy::EnergyBalance;
 use carom_dynamics::events::{Ending, Motion, Outcome};
+use carom_dynamics::plan::Plan;
 use carom_dynamics::scene::Scene;
 use carom_dynamics::surface::{Shape, Surface};
 use carom_geometry::bounds::Aabb;
@@ -240,8 +241,19 @@ impl Summary {
     }
 }
 
+/// What is to be known of balls that are points where there are meshes; none if there is no such ball.
+pub fn points_note(plan: &Plan) -> Option<String> {
+    let (points, radius) = plan.points_at_meshes()?;
+    let who = if points == 1 {
+        "1 ball is a point and meets".to_owned()
+    } else {
+        format!("{points} balls are points and meet")
+    };
+    Some(format!("{who} polygons and meshes as a ball of {radius:.1e} m, to stay clear of rounding"))
+}
+
 /// A line of the summary.
-fn line(name: &str, what: &str) -> String {
+pub fn line(name: &str, what: &str) -> String {
     format!("{name:<9} {what}")
 }
 

@@ -52,8 +52,23 @@ pub struct Event {
     pub velocity_in: Vector3<f64>,
     /// Velocity just after, in m/s.
     pub velocity: Vector3<f64>,
+    /// How far `time` and `position` may be off, of an impact and of what happens with it; none where sliding or a guard ends in something else.
+    pub bound: Option<Bound>,
     /// Angular velocity just after, in rad/s, if the scene calls for it.
     pub spin: Option<Vector3<f64>>,
+}
+
+/// How far a computed impact may be from the exact one of the path that led to it, with all its numbers from the start of that stretch taken as
+/// exact: what rounding does in one flight. What a method of integration does, and what rounding has done before, is not in it.
+///
+/// At a graze, where the clearance turns within its rounding, the exact path may miss what the computed one touches; the bound is then the time in
+/// which the clearance changes by more than that.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bound {
+    /// In s, to either side.
+    pub time: f64,
+    /// In m, in any direction: the rounding of the position, and the way in `time`.
+    pub position: f64,
 }
 
 /// How a ball moves.

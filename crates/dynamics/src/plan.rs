@@ -161,6 +161,18 @@ impl Plan {
         self.duration
     }
 
+    /// The radius in m with which `ball` meets polygons and meshes: its own, or, for a point and for what is not much larger than the rounding of its
+    /// position, [the one that stands for a point](point_radius). A point stays that far from them; planes it meets as what it is.
+    pub fn radius_at_meshes(&self, ball: &Ball) -> f64 {
+        ball.radius().max(self.point_radius)
+    }
+
+    /// How many balls meet polygons or meshes with [a radius](Self::radius_at_meshes) that is not their own, and which; none if all are what they are.
+    pub fn points_at_meshes(&self) -> Option<(usize, f64)> {
+        let points = self.balls.iter().filter(|ball| ball.radius() < self.point_radius).count();
+        (points > 0 && !self.meshes.is_empty()).then_some((points, self.point_radius))
+    }
+
     /// The method that flights are computed with.
     pub fn method(&self) -> Method {
         self.method

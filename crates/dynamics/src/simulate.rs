@@ -18,7 +18,7 @@ use crate::clock::Clock;
 use crate::collision::Obstacles;
 use crate::contacts::{Contact, Contacts};
 use crate::counters::Counters;
-use crate::events::{Ending, Event, EventKind, Motion, Outcome};
+use crate::events::{Bound, Ending, Event, EventKind, Motion, Outcome};
 use crate::forces::Forces;
 use crate::integrators::adaptive::Adaptive;
 use crate::integrators::{Integrator, Step};
@@ -56,6 +56,7 @@ pub fn simulate(plan: &Plan, ball: &Ball, observer: &mut impl Observer) -> Outco
         standstill: 0,
         answered: Contacts::new(),
         moved: 0.0,
+        bound: None,
         low_hops: 0,
         halvings: 0,
         events: 0,
@@ -124,6 +125,8 @@ struct Walk<'a, O> {
     answered: Contacts,
     /// Since when, in s.
     moved: f64,
+    /// How far the impact that happens now may be off.
+    bound: Option<Bound>,
     /// Impacts in a row after which no hop was high.
     low_hops: u32,
     /// How often the timestep is halved because the path closes where the ball does not.
@@ -140,6 +143,7 @@ impl<O: Observer> Walk<'_, O> {
         let duration = self.plan.duration;
         let Some(h) = self.integrator.timestep() else { return duration };
         let mut n = (self.clock.now() / h).floor();
+        // Twice at most: the plan refuses more steps than f64 can count one by one.
         while n * h <= self.clock.now() {
             n += 1.0;
         }
@@ -149,6 +153,7 @@ impl<O: Observer> Walk<'_, O> {
     /// Moves along `step` to `to`, which is at the time `end` if that is known better than by the sum.
     fn travel(&mut self, step: &Step, to: f64, motion: Motion, end: Option<f64>) {
         let time = self.clock.now();
+        self.bound = None;
         match end {
             Some(end) => self.clock.set(end),
             None => self.clock.advance(step.time(to)),
@@ -213,6 +218,7 @@ impl<O: Observer> Walk<'_, O> {
             normal: contact.normal,
             velocity_in,
             velocity: self.state.velocity,
+            bound: self.bound,
             spin: self.spins.then_some(self.forces.body.spin),
         });
         if self.events == EVENT_BUDGET {

@@ -89,6 +89,10 @@ pub fn default_rest_length(extent: f64, farthest: f64) -> f64 {
 }
 
 /// The least hop in m that a method of steps `h` (s) resolves under an acceleration `a` (m/s^2): one that lasts two steps.
+///
+/// The explicit Euler method adds a h to the speed of each hop, so that its hops do not get lower than where c_r (v + a h) = v, which is
+/// v = a h c_r / (1 - c_r): for c_r > 1/2 that is more than this, and the ball trembles for ever. No threshold ends it, because for c_r near 1 it would
+/// end hops that are seen; a shorter step makes it smaller in proportion, and no other method does it.
 pub fn least_hop(a: f64, h: f64) -> f64 {
     0.5 * a * h * h
 }
@@ -101,6 +105,21 @@ pub fn rate_rounding(speed: f64) -> f64 {
 /// Distances this small are contact: the rounding of a position at distance `farthest` from the origin after moving `travelled`.
 pub fn touch_distance(farthest: f64, travelled: f64) -> f64 {
     64.0 * UNIT_ROUNDOFF * (farthest + travelled)
+}
+
+/// How far the time of an impact may be off in s, whose clearance is known to `doubt` (m), at the speed `closing` >= 0 (m/s) and where the clearance
+/// bends by at most `bend` (m/s^2).
+///
+/// In 2 `doubt` / `closing` the clearance changes by 2 `doubt`, less the bend's 2 `bend` (`doubt` / `closing`)^2, which is at most a quarter of a
+/// doubt unless closing^2 < 8 bend doubt. That is a graze: there it takes 8 sqrt(`doubt` / `bend`), in which the bend alone makes 32 doubts and
+/// the speed unmakes at most 8 sqrt(8) of them.
+pub fn impact_time_bound(doubt: f64, closing: f64, bend: f64) -> f64 {
+    if closing * closing >= 8.0 * bend * doubt { 2.0 * doubt / closing } else { 8.0 * (doubt / bend).sqrt() }
+}
+
+/// How far the sum of the times of a ball's flights may be off at time `now` (s), by rounding: 8 units.
+pub fn clock_bound(now: f64) -> f64 {
+    8.0 * UNIT_ROUNDOFF * now
 }
 
 /// The square of the angle (rad) by which normals may differ and still be one: a point that is within `tolerance` of a ball of

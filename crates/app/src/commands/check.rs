@@ -5,6 +5,7 @@ use crate::error::AppError;
 use crate::mesh_file::{self, MeshFileError};
 use crate::scene::problem::{Severity, render_plain};
 use crate::scene::{self, Loaded};
+use crate::summary::points_note;
 use crate::terminal::{say, styled};
 use carom_dynamics::plan::Plan;
 use carom_dynamics::surface::Shape;
@@ -39,7 +40,7 @@ fn check_mesh(path: &Path) -> Result<(), AppError> {
 }
 
 fn check_scene(path: &Path) -> Result<(), AppError> {
-    let Loaded { scene, .. } = &loaded(path)?;
+    let (Loaded { scene, .. }, plan) = &loaded(path)?;
     let mut totals = Totals::default();
     for surface in &scene.surfaces {
         if let Shape::Mesh(mesh) = &surface.shape {
@@ -48,16 +49,19 @@ fn check_scene(path: &Path) -> Result<(), AppError> {
             totals.warnings += found.warnings;
         }
     }
+    if let Some(note) = points_note(plan) {
+        tell(doctor::Severity::Note, &note);
+    }
     let surfaces = count(scene.surfaces.len(), "surface", "surfaces");
     let size = [surfaces, count(scene.balls.len(), "ball", "balls")].join(", ");
     conclude(&path.display().to_string(), &size, totals)
 }
 
-/// The scene, if it is one that can be planned.
-fn loaded(path: &Path) -> Result<Loaded, AppError> {
+/// The scene with its plan, if it is one that can be planned.
+fn loaded(path: &Path) -> Result<(Loaded, Plan), AppError> {
     let loaded = scene::load(path, None)?;
     match Plan::new(&loaded.scene) {
-        Ok(_) => Ok(loaded),
+        Ok(plan) => Ok((loaded, plan)),
         Err(error) => Err(loaded.refuse(&error)),
     }
 }

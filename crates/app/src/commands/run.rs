@@ -6,7 +6,7 @@ use crate::output::files::{Files, refuse_clashes};
 use crate::output::recorder::Recording;
 use crate::output::target::Demand;
 use crate::scene;
-use crate::summary::Tally;
+use crate::summary::{Tally, line, points_note};
 use crate::terminal::{Progress, say};
 use carom_dynamics::run::run_balls;
 use std::num::NonZeroUsize;
@@ -53,6 +53,7 @@ pub fn run(args: &RunArgs) -> Result<(), AppError> {
             say(&super::explain::chosen(choice));
         }
         say(&summary.text());
+        points_note(&plan).inspect(|note| say(&line("points", note)));
     }
     summary.guarded().map_or(Ok(()), |message| Err(AppError::Guard(message)))
 }

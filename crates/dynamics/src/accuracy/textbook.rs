@@ -116,6 +116,7 @@ pub fn simulate_textbook(plan: &Plan, method: &Textbook, ball: &Ball, observer: 
                 normal: hit.normal,
                 velocity_in,
                 velocity: state.velocity,
+                bound: None,
                 spin: None,
             });
             (time, remaining) = (until, remaining - timestep);

@@ -4,12 +4,15 @@ use super::Walk;
 use crate::body::State;
 use crate::collision::{Hit, Returns};
 use crate::contacts::{Contact, Contacts};
-use crate::events::{Ending, EventKind, Motion};
+use crate::events::{Bound, Ending, EventKind, Motion};
 use crate::integrators::Step;
 use crate::observer::Observer;
 use crate::response::{collapse, respond};
-use crate::tolerance::{COLLAPSE_AFTER, merge_angle_squared, rate_rounding, touch_distance};
+use crate::tolerance::{
+    COLLAPSE_AFTER, clock_bound, impact_time_bound, merge_angle_squared, rate_rounding, touch_distance,
+};
 use carom_geometry::clearance::Entry;
+use nalgebra::Vector3;
 
 impl<O: Observer> Walk<'_, O> {
     /// One pass of the slides' loop.
@@ -99,6 +102,7 @@ impl<O: Observer> Walk<'_, O> {
             self.correct(contact, tolerance);
             contact.rate = self.rate(step, hit, contact, &before, returns);
         }
+        self.bound = self.bound(step, &hit, tolerance, &contacts);
         let collapses = self.collapses(&mut contacts, tolerance);
         let carried = |c: &Contact| before.iter().any(|b| b.lasting && b.surface == c.surface && b.site == c.site);
         if let Some(contact) = contacts.iter().find(|c| c.rate < 0.0)
@@ -137,6 +141,26 @@ impl<O: Observer> Walk<'_, O> {
             self.halvings += 1;
             self.counters.halvings += 1;
         }
+    }
+
+    /// How far the time and the place of `hit` may be off, with contact found to `tolerance` (m); none if nothing closes there.
+    fn bound(&self, step: &Step, hit: &Hit, tolerance: f64, contacts: &[Contact]) -> Option<Bound> {
+        let doubt = tolerance.max(touch_distance(self.plan.farthest, step.path.reach(hit.f)));
+        let velocity = step.path.derivative(hit.f) / step.seconds;
+        let mut acceleration = Vector3::zeros();
+        for (k, term) in step.path.terms().iter().enumerate().skip(1).rev() {
+            acceleration = acceleration * hit.f + term * ((k + 1) * k) as f64;
+        }
+        acceleration /= step.seconds * step.seconds;
+        let time = |c: &Contact| {
+            let across = self.obstacles.bend(c).across(&velocity).norm_squared() / self.obstacles.radius_at(c);
+            let bend = c.normal.dot(&acceleration).abs() + if across > 0.0 { across } else { 0.0 };
+            impact_time_bound(doubt, -c.rate, bend)
+        };
+        let closing = contacts.iter().filter(|c| c.rate < 0.0 && c.surface == hit.surface);
+        let now = self.clock.now();
+        let time = closing.map(time).reduce(f64::max)?.min(now) + clock_bound(now);
+        Some(Bound { time, position: doubt + velocity.norm() * time })
     }
 
     /// Whether contacts that lose energy have answered each other without time passing for so long that there is no end to it; then
