@@ -1,5 +1,5 @@
 //! The effects, one file each: what bends a flight (gravity, buoyancy, drag and wind, the Magnus force and the decay of the spin it
-//! needs) and what answers a contact (restitution, friction).
+//! needs) and what answers a contact (restitution, friction, and the grip that turns a ball).
 
 pub mod buoyancy;
 pub mod drag;
