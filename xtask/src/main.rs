@@ -8,6 +8,7 @@ mod log;
 mod blocks;
 mod commands;
 mod accuracy;
+mod certification;
 mod readme;
 mod instructions;
 mod measure;
@@ -21,7 +22,8 @@ use std::process::ExitCode;
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
 /// The tasks, as the README may name them.
-const TASKS: [&str; 8] = ["verify", "readme", "accuracy", "soak", "conformance", "instructions", "peers", "scaling"];
+const TASKS: [&str; 9] =
+    ["verify", "readme", "accuracy", "certification", "soak", "conformance", "instructions", "peers", "scaling"];
 
 const HELP: &str = "\
 Usage: cargo xtask TASK
@@ -32,6 +34,7 @@ Tasks:
   verify --list               the steps, and what each checks
   readme                      rewrites the generated blocks of README.md
   accuracy                    measures what accuracy costs in three scenes; plots, tables, README
+  certification               measures what certification costs, per query and per bounce; table
   conformance                 writes the folder conformance: scenes with the events they must have
   soak --bounces N            bounces balls N times (1e8 say) in scenes of every kind and reports escapes, gains and stalls
   soak --shots M              shoots M points and M balls from inside closed meshes at their edges and vertices
@@ -54,6 +57,7 @@ fn main() -> ExitCode {
         },
         ["readme"] => readme::rewrite(),
         ["accuracy"] => accuracy::run(),
+        ["certification"] => certification::run(),
         ["instructions"] => instructions::run(false),
         ["instructions", "--update"] => instructions::run(true),
         ["peers"] => measure::peers(),
