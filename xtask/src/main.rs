@@ -9,6 +9,7 @@ mod blocks;
 mod commands;
 mod picture;
 mod accuracy;
+mod certification;
 mod readme;
 mod instructions;
 mod measure;
@@ -22,8 +23,18 @@ use std::process::ExitCode;
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
 /// The tasks, as the README may name them.
-const TASKS: [&str; 9] =
-    ["verify", "readme", "accuracy", "soak", "conformance", "instructions", "peers", "scaling", "picture"];
+const TASKS: [&str; 10] = [
+    "verify",
+    "readme",
+    "picture",
+    "accuracy",
+    "certification",
+    "soak",
+    "conformance",
+    "instructions",
+    "peers",
+    "scaling",
+];
 
 const HELP: &str = "\
 Usage: cargo xtask TASK
@@ -35,6 +46,7 @@ Tasks:
   readme                      rewrites the generated blocks of README.md
   picture                     takes the README's picture anew, by Chromium
   accuracy                    measures what accuracy costs in three scenes; plots, tables, README
+  certification               measures what certification costs, per query and per bounce; table
   conformance                 writes the folder conformance: scenes with the events they must have
   soak --bounces N            bounces balls N times (1e8 say) in scenes of every kind and reports escapes, gains and stalls
   soak --shots M              shoots M points and M balls from inside closed meshes at their edges and vertices
@@ -58,6 +70,7 @@ fn main() -> ExitCode {
         ["readme"] => readme::rewrite(),
         ["picture"] => picture::take(),
         ["accuracy"] => accuracy::run(),
+        ["certification"] => certification::run(),
         ["instructions"] => instructions::run(false),
         ["instructions", "--update"] => instructions::run(true),
         ["peers"] => measure::peers(),
