@@ -17,6 +17,12 @@ pub fn wrong(project: &Project, carom: &Carom, text: &str) -> Result<Vec<String>
         }
         match words[..] {
             ["cargo", "xtask", task, ..] if !TASKS.contains(&task) => say(format!("there is no task {task}")),
+            ["cargo", "run", "-p", package, "--example", name, ..] => {
+                let folder = package.strip_prefix("carom-").unwrap_or("app");
+                if !project.root().join(format!("crates/{folder}/examples/{name}.rs")).exists() {
+                    say(format!("{package} has no example {name}"));
+                }
+            }
             ["cargo", "run", ..] | ["carom", ..] => {
                 let arguments = carom_arguments(&words);
                 let subcommand = arguments.first().copied().unwrap_or("help");
