@@ -169,7 +169,7 @@ fn balls() {
 /// Bounces in a box of six planes along the axes, without gravity.
 fn bounces() {
     const BOUNCES: f64 = 100_000.0;
-    let (size, start, velocity, r) = ([2.0, 1.5, 1.0], [0.5, 0.4, 0.3], [1.0, 0.7071, 0.3333], 0.125);
+    let (size, start, velocity, r) = ([2.0, 1.5, 1.0], [0.5, 0.4, 0.3], [1.0, 0.7, 0.35], 0.125);
     let rate: f64 = (0..3).map(|i| velocity[i] / (size[i] - 2.0 * r)).sum();
     let duration = BOUNCES / rate;
     let plan = Stage::new(duration).room(smooth(1.0), size).ball(start, velocity, r).plan();
