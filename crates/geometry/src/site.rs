@@ -1,5 +1,7 @@
 //! The places of a mesh, its faces, edges and vertices, and how far each carries a ball.
 
+mod cone;
+
 use crate::closest::Feature;
 use crate::mesh::{Fold, Mesh};
 use nalgebra::{Point3, Vector3};
@@ -184,7 +186,7 @@ impl Mesh {
     }
 
     /// Where `site` is nearest to `centre`, taken as an infinite plane or line, and the unit normal from there to `centre`.
-    /// None where the centre lies on it.
+    /// None where the centre lies on it. At an edge or vertex the normal is in the cone of those that a ball nearest to it can have.
     pub fn foot(&self, site: Site, centre: &Point3<f64>) -> Option<(Point3<f64>, Vector3<f64>)> {
         let Some(away) = self.bend(site).away_from(centre) else {
             let face = site.face();
@@ -194,7 +196,7 @@ impl Mesh {
             let height = n.dot(&(centre - point));
             return Some((centre - n * height, if height < 0.0 { -n } else { n }));
         };
-        away.try_normalize(0.0).map(|n| (centre - away, n))
+        self.cone_normal(site, &away).map(|n| (centre - away, n))
     }
 }
 
