@@ -7,7 +7,7 @@
 //! support plane makes it exact for a face and quadratically convergent for edges and vertices.)
 
 use crate::bounds::{amax, largest};
-use crate::clearance::Entry;
+use crate::clearance::{Clearance, Entry};
 use crate::closest::{Asked, Feature};
 use crate::path::Path;
 use crate::rounding::{UNIT_ROUNDOFF, contact_bound, hold_bound};
@@ -149,6 +149,18 @@ pub(crate) fn contact_from(ball: &MovingBall, asked: &Asked, from: f64, to: f64,
         let plane = path.clearance(support.gap, &support.normal);
         let (height, falling) = (plane.at(f), plane.rate(f) < 0.0);
         if height <= 2.0 * bound_at(f) && falling {
+            // Off its border, the direction to which is rounding for a small ball, the ball may rise from the face itself.
+            match face_plane(asked, ball, f).filter(|_| support.feature != Feature::Face) {
+                Some((gap, n)) if rises(&path.clearance(gap, &n), f, 2.0 * bound_at(f)) => match meets(gap, &n, f).0 {
+                    Entry::Never => return Contact::Miss,
+                    Entry::At { f: next, .. } if next > f => {
+                        f = next;
+                        continue;
+                    }
+                    Entry::At { .. } => {}
+                },
+                _ => {}
+            }
             return Contact::At { feature: support.feature, f: polish(ball, asked, support, f, end, rounds) };
         }
         let (entry, bound) = meets(support.gap, &support.normal, f);
@@ -164,6 +176,11 @@ pub(crate) fn contact_from(ball: &MovingBall, asked: &Asked, from: f64, to: f64,
         return Contact::Miss;
     }
     Contact::At { f, feature: Support::at(ball, asked, f).feature }
+}
+
+/// Whether a clearance that is 0 at `f` to within `bound` does not fall there.
+fn rises(clearance: &Clearance, f: f64, bound: f64) -> bool {
+    clearance.at(f) >= -bound && clearance.rate(f) >= 0.0
 }
 
 /// The distance between the ball at the start and the plane of the triangle, seen from the side the ball is on at `f`, and the normal
