@@ -42,6 +42,10 @@ impl Mesh {
     fn edge_cone_normal(&self, face: u32, edge: u8, away: &Vector3<f64>) -> Option<Vector3<f64>> {
         let Site::Edge { face, edge } = self.edge_site(face, edge) else { return None };
         let ends = self.edge_ends(face, edge);
+        let [a, b] = ends.map(|v| self.vertices()[v as usize]);
+        // Of a small difference of places, rounding has left a part along the edge.
+        let along = (b - a).try_normalize(0.0).unwrap_or_else(Vector3::zeros);
+        let away = &(away - along * along.dot(away));
         let mut most = (0.0, None);
         for other in self.faces_at(Site::Edge { face, edge }) {
             let local = (0..3).find(|&i| self.edge_ends(other, i) == ends);
