@@ -167,9 +167,17 @@ class Run {
       return { spin: times(from, left), orientation: compose(rotation(times(from, tau * (1 - left))), before) };
     }
     const spin = end > begin ? add(from, times(subtract(to, from), seconds / (end - begin))) : to;
-    const mean = times(add(from, spin), seconds / 2);
-    const turn = add(mean, times(cross(spin, from), (seconds * seconds) / 12));
-    return { spin, orientation: compose(rotation(turn), before) };
+    const twist = norm(cross(from, spin)) * seconds ** 2;
+    const turn = Math.max(norm(from), norm(spin)) * seconds;
+    const steps = clamp(Math.ceil(Math.min(8 * Math.sqrt(twist), 2 * turn)), 1, 256);
+    const step = seconds / steps;
+    let orientation = before;
+    for (let k = 0; k < steps; k++) {
+      const [a, b] = [k, k + 1].map((k) => add(from, times(subtract(spin, from), k / steps)));
+      const turned = add(times(add(a, b), step / 2), times(cross(b, a), step ** 2 / 12));
+      orientation = compose(rotation(turned), orientation);
+    }
+    return { spin, orientation };
   }
 
   turning(ball, time) {
