@@ -277,7 +277,8 @@ pub struct ExportArgs {
     pub output: PathBuf,
     /// What the motion is given by: `events`, or `fps=N` for programs that ignore velocities
     ///
-    /// `fps=N` is a position for every N-th of a second, and straight lines between them.
+    /// `fps=N` is a position for every N-th of a second, and straight lines between them: a ball that turns more than half
+    /// way round in that time then seems to turn otherwise.
     #[arg(long, value_name = "KEYS", default_value = "events", value_parser = keys)]
     pub keys: Keys,
     /// What to simulate.

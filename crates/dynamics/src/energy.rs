@@ -9,6 +9,12 @@ pub fn kinetic(state: &State) -> f64 {
     0.5 * state.velocity.norm_squared()
 }
 
+/// The energy of rotation per mass, I omega^2 / 2 with the moment of inertia I = `alpha` m r^2, in J/kg: of the `radius` in m and the
+/// angular velocity `spin` in rad/s.
+pub fn rotational(alpha: f64, radius: f64, spin: &Vector3<f64>) -> f64 {
+    0.5 * alpha * (spin * radius).norm_squared()
+}
+
 /// The potential energy per mass, -g . x, in J/kg, counted from the plane through the origin; 0 without gravity.
 pub fn potential(state: &State, gravity: Option<Gravity>) -> f64 {
     gravity.map_or(0.0, |g| -g.acceleration().dot(&state.position.coords))
@@ -51,9 +57,8 @@ impl EnergyBalance {
     /// Adds the rotation of a ball of `mass` with the moment of inertia `alpha` m r^2 and the `radius` in m, whose angular velocity went from
     /// `start` to `end` (rad/s).
     pub fn add_rotation(&mut self, mass: f64, alpha: f64, radius: f64, [start, end]: [Vector3<f64>; 2]) {
-        let energy = |spin: Vector3<f64>| 0.5 * mass * alpha * (spin * radius).norm_squared();
-        self.start += energy(start);
-        self.end += energy(end);
+        self.start += mass * rotational(alpha, radius, &start);
+        self.end += mass * rotational(alpha, radius, &end);
     }
 
     /// At the start, in J (in J/kg summed over the balls, if each counts as 1 kg).

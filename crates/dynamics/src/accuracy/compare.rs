@@ -40,6 +40,8 @@ pub struct Shares {
     pub determination: f64,
     /// Of rounding: what becomes of the last digit of the start.
     pub rounding: f64,
+    /// The same in the first flight.
+    pub flight_rounding: f64,
 }
 
 /// When positions are compared, in s.
@@ -49,6 +51,13 @@ pub struct Times {
     pub all: Vec<f64>,
     /// The one that stands for the first flight.
     pub flight: f64,
+}
+
+impl Times {
+    /// Those up to the one that stands for the first flight.
+    pub fn in_flight(&self) -> &[f64] {
+        &self.all[..self.all.partition_point(|t| *t <= self.flight)]
+    }
 }
 
 /// A reference with the time up to which it can be compared with.

@@ -27,6 +27,11 @@ impl SpinDecay {
     pub fn after(&self, spin: &Vector3<f64>, seconds: f64) -> Vector3<f64> {
         spin * exponential(-seconds / self.0)
     }
+
+    /// How long the spin of the start would turn the ball as far as it does in `seconds` >= 0, decaying: tau (1 - e^(-t / tau)), in s.
+    pub fn lasting(&self, seconds: f64) -> f64 {
+        self.0 * (1.0 - exponential(-seconds / self.0))
+    }
 }
 
 #[cfg(test)]
@@ -38,6 +43,9 @@ mod tests {
         let decay = SpinDecay::new(25.0).unwrap();
         let spin = Vector3::new(0.0, -300.0, 4.0);
         assert_eq!(decay.after(&spin, 0.0), spin);
+        assert_eq!(decay.lasting(0.0), 0.0);
+        // In all it turns as far as in one time constant without decay.
+        assert_eq!(decay.lasting(1e6), 25.0);
         assert!((decay.after(&spin, 50.0) - spin * (-2f64).exp()).norm() < 1e-12);
         assert!(SpinDecay::new(0.0).is_err() && SpinDecay::new(f64::NAN).is_err());
     }
