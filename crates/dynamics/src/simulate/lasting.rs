@@ -178,6 +178,12 @@ impl<O: Observer> Walk<'_, O> {
             (None, Some((f, contact, bound))) => {
                 let step = Step { exact: step.exact && self.settling.is_none(), ..step };
                 self.end_settling();
+                match self.face_that_rises(contact, bound.next) {
+                    Some((surface, face)) => {
+                        self.arrive(&step, Hit { f, surface, face: Some(face), rate: None }, &returns)
+                    }
+                    None => self.cross(contact, &bound),
+                }
             }
 
     /// In how many seconds friction will have stopped a ball that turns as it slides, if it is known: where the rest test has a speed of its
