@@ -185,6 +185,16 @@ impl<O: Observer> Walk<'_, O> {
                     None => self.cross(contact, &bound),
                 }
             }
+            (None, None) if self.settling.is_some() => {
+                if stops {
+                    self.end_settling();
+                }
+            }
+            (None, None) if off.is_some() => self.set_flying(carriers.first().map(|c| c.contact)),
+            (None, None) if stops => self.state.velocity = Vector3::zeros(),
+            (None, None) => {}
+        }
+    }
 
     /// In how many seconds friction will have stopped a ball that turns as it slides, if it is known: where the rest test has a speed of its
     /// own, that decides.
