@@ -16,6 +16,7 @@ use carom_geometry::site::{Bend, RegionBound, Site};
 use carom_geometry::sweep::Work;
 use nalgebra::{Point3, Vector3};
 use smallvec::SmallVec;
+use std::cmp::Ordering;
 
 /// The earliest collision of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -327,8 +328,7 @@ impl<'a> Obstacles<'a> {
             }
             counters.add(&work);
         }
-        let rank = |c: &Contact| (self.plan.surfaces[c.surface].rank, c.site);
-        all.sort_by(|a, b| a.rate.total_cmp(&b.rate).then_with(|| rank(a).cmp(&rank(b))));
+        all.sort_by(|a, b| a.rate.total_cmp(&b.rate).then_with(|| self.order(a, b)));
         let mut contacts = Contacts::new();
         for c in all {
             let same = |kept: &Contact| {
@@ -342,8 +342,15 @@ impl<'a> Obstacles<'a> {
                 contacts.push(c);
             }
         }
-        contacts.sort_by_key(rank);
+        contacts.sort_by(|a, b| self.order(a, b));
         contacts
+    }
+
+    /// The order of contacts: by what they are and not by how they are numbered, so that the order of surfaces and faces does not matter.
+    pub fn order(&self, a: &Contact, b: &Contact) -> Ordering {
+        let rank = |c: &Contact| self.plan.surfaces[c.surface].rank;
+        let normals = a.normal.iter().zip(b.normal.iter()).map(|(a, b)| a.total_cmp(b));
+        rank(a).cmp(&rank(b)).then(normals.fold(Ordering::Equal, Ordering::then)).then_with(|| a.site.cmp(&b.site))
     }
 
     /// The distance that is left between the ball at `position` and what it is in contact with.
