@@ -27,7 +27,7 @@ pub(crate) enum Law {
 const STOKES: f64 = 24.0;
 
 /// C of a smooth sphere at the Reynolds number `re`, up to 10^6: data correlation of F. A. Morrison, *An Introduction to Fluid
-/// Mechanics* (2013), equation 8.83.
+/// Mechanics* (2013), chapter 8.
 pub fn sphere_coefficient(re: f64) -> f64 {
     STOKES / re + beyond_stokes(re)
 }

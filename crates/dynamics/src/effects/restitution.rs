@@ -1,6 +1,6 @@
 //! Restitution: v_n+ = -c_r v_n- (equation of section 3.2.1 of the chapter), with a c_r that is constant or falls with the speed.
 //!
-//! Above a closing speed at which the bodies begin to yield, c_r falls as v^(-1/4): K. L. Johnson, *Contact Mechanics* (1985), section 11.4,
+//! Above a closing speed at which the bodies begin to yield, c_r falls as v^(-1/4): K. L. Johnson, *Contact Mechanics* (1985), chapter 11,
 //! for a fully plastic impact. The fourth root is two square roots.
 
 use crate::body::Ball;
