@@ -47,6 +47,17 @@ fn beyond_stokes(re: f64) -> f64 {
 }
 
 /// Air resistance; wind is part of it, because without resistance wind does nothing.
+///
+/// ```
+/// use carom_dynamics::effects::drag::Drag;
+/// use nalgebra::Vector3;
+///
+/// // The book's linear law in a wind of 2 m/s, and the quadratic one of a sphere in air.
+/// let book = Drag::linear(0.05)?.in_wind(Vector3::new(2.0, 0.0, 0.0))?;
+/// let sphere = Drag::quadratic(0.47, 1.204)?;
+/// assert_eq!((book.wind().x, book.is_linear(), sphere.is_linear()), (2.0, true, false));
+/// # Ok::<(), carom_dynamics::error::ValueError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Drag {
     law: Law,

@@ -7,6 +7,16 @@ use crate::body::Ball;
 use crate::error::{ValueError, require};
 
 /// The coefficient of restitution c_r, in [0, 1].
+///
+/// ```
+/// use carom_dynamics::effects::restitution::Restitution;
+///
+/// assert_eq!(Restitution::new(0.5)?.rebound(8.0), 4.0);
+/// // Of bodies that yield above 1 m/s: 16 times as fast, half the coefficient.
+/// let yielding = Restitution::falling(0.5, 1.0)?;
+/// assert_eq!((yielding.at(1.0), yielding.at(16.0)), (0.5, 0.25));
+/// # Ok::<(), carom_dynamics::error::ValueError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Restitution {
     c_r: f64,
