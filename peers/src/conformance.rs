@@ -1,7 +1,7 @@
 //! What rapier3d makes of the conformance pack: its events of every scene, as the files that `carom compare` reads.
 //!
 //! The engine is given what suits it: steps of 1/240 s and not fewer than a thousand, continuous collision detection, inner edges
-//! of meshes fixed, no rotation, no sleep. Where it has no law of its own, drag is a force of the user's.
+//! of meshes fixed, surfaces turned towards the ball, no rotation, no sleep. Where it has no law of its own, drag is a force of the user's.
 
 use carom_benches::scenes::Result;
 use carom_dynamics::body::{Ball, Body};
@@ -87,7 +87,7 @@ fn ball_events(scene: &Scene, ball: &Ball) -> Result<Vec<Happening>> {
     // What a surface is made of decides alone.
     world.colliders.insert_with_parent(shape.restitution(0.0), handle, &mut world.bodies);
     let seen = Body { radius: ball.radius(), inertia: 1.0, drag: ball.drag().unwrap_or(0.0), spin: ball.spin() };
-    let (mut found, mut pushed, mut still_since): (Vec<Happening>, bool, Option<Happening>) = (Vec::new(), false, None);
+    let (mut found, mut hit, mut still_since): (Vec<Happening>, bool, Option<Happening>) = (Vec::new(), false, None);
     for step in 1..=(scene.duration / dt).round() as u64 {
         let mut expected = world.gravity * dt as f32;
         let body = &mut world.bodies[handle];
@@ -103,17 +103,15 @@ fn ball_events(scene: &Scene, ball: &Ball) -> Result<Vec<Happening>> {
         let body = &world.bodies[handle];
         let (at, v, time) = (body.translation(), body.linvel(), step as f64 * dt);
         let push = v - before - expected;
-        // More than what rounding does to the velocity.
-        let is_pushed = push.length() > 1e-4 * (before.length() + expected.length());
-        if is_pushed && !pushed && push.dot(before) < 0.0 {
+        // More than holds it up, and more than what rounding does to the velocity.
+        let is_hit = push.length() > 2.0 * expected.length() + 1e-4 * before.length();
+        if is_hit && !hit && push.dot(before) < 0.0 {
             found.push((time, "impact", at, v));
-        } else if let (true, true, Some(last)) = (is_pushed, pushed, found.last_mut()) {
-            // An impact that takes several steps ends with the last of them, unless it turns into lasting contact.
-            if push.length() > 2.0 * expected.length() {
-                *last = (last.0, last.1, last.2, v);
-            }
+        } else if let (true, true, Some(last)) = (is_hit, hit, found.last_mut()) {
+            // An impact that takes several steps ends with the last of them.
+            last.3 = v;
         }
-        pushed = is_pushed;
+        hit = is_hit;
         still_since = if f64::from(v.length()) < REST { still_since.or(Some((time, "rest", at, v))) } else { None };
     }
     found.extend(still_since);
@@ -146,7 +144,10 @@ fn collider(surface: &Surface, ball: &Ball) -> Result<Collider> {
             ));
         }
         Shape::Polygon(polygon) => {
-            let faces = polygon.triangulate().iter().map(|face| face.map(|i| i as u32)).collect();
+            // With its inner edges fixed, a mesh has one side: that on which the ball starts.
+            let turn = polygon.plane().signed_distance(&ball.start().position) < 0.0;
+            let face = |[a, b, c]: [u32; 3]| if turn { [a, c, b] } else { [a, b, c] };
+            let faces = polygon.triangulate().iter().map(|corners| face(corners.map(|i| i as u32))).collect();
             mesh(polygon.vertices(), faces)?
         }
         Shape::Mesh(the) => mesh(the.vertices(), the.faces().to_vec())?,

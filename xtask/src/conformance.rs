@@ -50,6 +50,10 @@ pub fn engines() -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
+fn figure(x: f64) -> String {
+    if x == 0.0 { "0".to_owned() } else { format!("{x:.0e}") }
+}
+
 /// The table that was kept, which has a row for every case of the pack.
 pub fn block(project: &Project) -> Result<String> {
     let table = project.read(KEPT)?;
@@ -106,12 +110,12 @@ fn table(rows: &[(String, [Verdict; 2])]) -> Result<String> {
         write!(lines, "| [{case}]({PACK}/scenes/{case}.toml) ")?;
         for (verdict, sum) in verdicts.iter().zip(&mut sums) {
             match verdict {
-                Verdict::Untold(why) => write!(lines, "| {why} | | | ")?,
+                Verdict::Untold(why) => write!(lines, "| {why} | | | | ")?,
                 Verdict::Told { targets: all, met, found, off } => {
                     *sum += met;
-                    let off = off.map(|x| x.map_or(String::new(), |x| format!("{x:.0e}")));
                     let there = if found < all { format!(", {} not there", all - found) } else { String::new() };
-                    write!(lines, "| {met} of {all}{there} | {} | {} ", off[0], off[1])?;
+                    write!(lines, "| {met} of {all}{there} ")?;
+                    off.iter().try_for_each(|x| write!(lines, "| {} ", x.map_or(String::new(), figure)))?;
                 }
             }
         }
@@ -128,7 +132,7 @@ fn table(rows: &[(String, [Verdict; 2])]) -> Result<String> {
         "Of {targets} targets in {count} cases, Carom meets {} and rapier3d {}, to the tolerances of the pack, which are those of double precision. To a \
          millimetre, a millisecond and a millimetre a second, rapier3d meets all targets of {eye} cases.\n\n\
          <details><summary>Case by case</summary>\n\n\
-         | case | Carom: met | time, s | place, m | rapier3d: met | time, s | place, m |\n|---|---|--:|--:|---|--:|--:|\n{lines}\n</details>\n",
+         | case | Carom meets | s | m | m/s | rapier3d meets | s | m | m/s |\n|---|---|--:|--:|--:|---|--:|--:|--:|\n{lines}\n</details>\n",
         sums[0], sums[1]
     ))
 }
