@@ -7,7 +7,6 @@ use super::resolution::Original;
 use super::variant::{Approach, Variant};
 use crate::counters::Counters;
 use crate::scene::Method;
-use crate::tolerance::FINEST_TOLERANCE;
 use std::fmt;
 
 /// What the methods are compared with.
@@ -17,8 +16,6 @@ pub enum ReferenceKind {
     ClosedForm,
     /// The same physics in 128 bits: Taylor series, and every surface on its own.
     Extended,
-    /// This crate's own adaptive pair at a tolerance of 1e-14, because an effect of the scene, which is named, has no series in the reference.
-    Itself(&'static str),
 }
 
 impl fmt::Display for ReferenceKind {
@@ -26,10 +23,6 @@ impl fmt::Display for ReferenceKind {
         match self {
             Self::ClosedForm => f.write_str("the closed form, in 128 bits"),
             Self::Extended => f.write_str("a solver of its own in 128 bits: Taylor series, every surface by itself"),
-            Self::Itself(effect) => write!(
-                f,
-                "only the adaptive pair at tolerance {FINEST_TOLERANCE:e}, which shares the code that it judges: {effect} is not in the solver of 128 bits"
-            ),
         }
     }
 }
