@@ -134,7 +134,7 @@ pub struct SimulationArgs {
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub balls: Option<PathBuf>,
     /// Simulate with N threads; the output is the same bytes for any N [default: one per processor]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = threads)]
     pub threads: Option<NonZeroUsize>,
     /// Print nothing but errors
     #[arg(long, short)]
@@ -332,6 +332,11 @@ pub struct MaterialsArgs {
 pub struct CompletionsArgs {
     /// The shell
     pub shell: Shell,
+}
+
+/// Reads a number of threads.
+fn threads(word: &str) -> Result<NonZeroUsize, String> {
+    word.parse().map_err(|_| "it must be a whole number from 1".to_owned())
 }
 
 /// Reads a finite number above 0.

@@ -26,6 +26,20 @@ pub fn potential(state: &State, gravity: Option<Gravity>) -> f64 {
 /// that nothing is negative, a scene may be moved without changing its balance, and a lone ball that falls and comes to rest has lost all it had.
 ///
 /// Each ball counts with its mass, in kg. Where masses are unknown they are all taken as 1 kg, and the balance is per mass.
+///
+/// ```
+/// use carom_dynamics::body::State;
+/// use carom_dynamics::effects::gravity::Gravity;
+/// use carom_dynamics::energy::EnergyBalance;
+/// use nalgebra::{Point3, Vector3};
+///
+/// // 2 kg fall 4 m under g = 8 m/s^2 and lie still.
+/// let mut balance = EnergyBalance::new(Some(Gravity::uniform(Vector3::new(0.0, 0.0, -8.0))?));
+/// let still = |z| State { position: Point3::new(0.0, 0.0, z), velocity: Vector3::zeros() };
+/// balance.add(2.0, &still(4.0), &still(0.0));
+/// assert_eq!((balance.start(), balance.end(), balance.change()), (64.0, 0.0, Some(-1.0)));
+/// # Ok::<(), carom_dynamics::error::ValueError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EnergyBalance {
     gravity: Option<Gravity>,

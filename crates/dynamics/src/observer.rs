@@ -97,6 +97,51 @@ impl Segment {
 }
 
 /// Watches one ball.
+///
+/// ```
+/// # use carom_dynamics::body::Ball;
+/// # use carom_dynamics::effects::{friction::Friction, gravity::Gravity, restitution::Restitution};
+/// # use carom_dynamics::scene::Scene;
+/// # use carom_dynamics::surface::{Material, Shape, Surface};
+/// # use carom_geometry::plane::Plane;
+/// # use nalgebra::{Point3, Vector3};
+/// # let floor = Plane::from_point_normal(Point3::origin(), Vector3::z())?;
+/// # let material = Material { restitution: Restitution::new(0.5)?, friction: Friction::None };
+/// # let scene = Scene {
+/// #     gravity: Some(Gravity::uniform(Vector3::new(0.0, 0.0, -8.0))?),
+/// #     surfaces: vec![Surface { name: "floor".into(), material, shape: Shape::Plane(floor) }],
+/// #     balls: vec![Ball::new(Point3::new(0.0, 0.0, 4.0), Vector3::zeros(), 0.0, None)?],
+/// #     ..Scene::lasting(3.0)
+/// # };
+/// use carom_dynamics::events::{Event, EventKind};
+/// use carom_dynamics::observer::{Observer, Segment};
+/// use carom_dynamics::plan::Plan;
+/// use carom_dynamics::simulate::simulate;
+///
+/// /// Counts the impacts and remembers the hardest.
+/// #[derive(Default)]
+/// struct Impacts {
+///     count: usize,
+///     hardest: f64,
+/// }
+///
+/// impl Observer for Impacts {
+///     fn event(&mut self, event: &Event) {
+///         if event.kind == EventKind::Impact {
+///             self.count += 1;
+///             self.hardest = self.hardest.max(-event.normal.dot(&event.velocity_in));
+///         }
+///     }
+///
+///     fn segment(&mut self, _: &Segment) {}
+/// }
+///
+/// let plan = Plan::new(&scene)?;
+/// let mut impacts = Impacts::default();
+/// simulate(&plan, &plan.balls()[0], &mut impacts);
+/// assert!(impacts.count > 10 && impacts.hardest == 8.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub trait Observer {
     /// Something happened.
     fn event(&mut self, event: &Event);
@@ -140,6 +185,34 @@ impl<A: Observer> Observer for Option<A> {
 }
 
 /// The whole run of a ball: its events and its motion.
+///
+/// ```
+/// # use carom_dynamics::body::Ball;
+/// # use carom_dynamics::effects::{friction::Friction, gravity::Gravity, restitution::Restitution};
+/// # use carom_dynamics::scene::Scene;
+/// # use carom_dynamics::surface::{Material, Shape, Surface};
+/// # use carom_geometry::plane::Plane;
+/// # use nalgebra::{Point3, Vector3};
+/// # let floor = Plane::from_point_normal(Point3::origin(), Vector3::z())?;
+/// # let material = Material { restitution: Restitution::new(0.5)?, friction: Friction::None };
+/// # let scene = Scene {
+/// #     gravity: Some(Gravity::uniform(Vector3::new(0.0, 0.0, -8.0))?),
+/// #     surfaces: vec![Surface { name: "floor".into(), material, shape: Shape::Plane(floor) }],
+/// #     balls: vec![Ball::new(Point3::new(0.0, 0.0, 4.0), Vector3::zeros(), 0.0, None)?],
+/// #     ..Scene::lasting(3.0)
+/// # };
+/// use carom_dynamics::observer::Trajectory;
+/// use carom_dynamics::plan::Plan;
+/// use carom_dynamics::simulate::simulate;
+///
+/// let plan = Plan::new(&scene)?;
+/// let mut run = Trajectory::default();
+/// simulate(&plan, &plan.balls()[0], &mut run);
+/// // Any moment of it is the one that was computed, and no frame.
+/// let (state, _) = run.at(0.5).ok_or("within the run")?;
+/// assert_eq!((state.position.z, state.velocity.z), (3.0, -4.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Trajectory {
     /// The events, in order of time.
@@ -192,6 +265,33 @@ pub struct Frame {
 }
 
 /// Samples the motion at t = k / fps. Frames are read off the stored paths and never change the run.
+///
+/// ```
+/// # use carom_dynamics::body::Ball;
+/// # use carom_dynamics::effects::{friction::Friction, gravity::Gravity, restitution::Restitution};
+/// # use carom_dynamics::scene::Scene;
+/// # use carom_dynamics::surface::{Material, Shape, Surface};
+/// # use carom_geometry::plane::Plane;
+/// # use nalgebra::{Point3, Vector3};
+/// # let floor = Plane::from_point_normal(Point3::origin(), Vector3::z())?;
+/// # let material = Material { restitution: Restitution::new(0.5)?, friction: Friction::None };
+/// # let scene = Scene {
+/// #     gravity: Some(Gravity::uniform(Vector3::new(0.0, 0.0, -8.0))?),
+/// #     surfaces: vec![Surface { name: "floor".into(), material, shape: Shape::Plane(floor) }],
+/// #     balls: vec![Ball::new(Point3::new(0.0, 0.0, 4.0), Vector3::zeros(), 0.0, None)?],
+/// #     ..Scene::lasting(3.0)
+/// # };
+/// use carom_dynamics::observer::FrameSampler;
+/// use carom_dynamics::plan::Plan;
+/// use carom_dynamics::simulate::simulate;
+///
+/// let plan = Plan::new(&scene)?;
+/// let mut sampler = FrameSampler::new(2.0, plan.duration());
+/// simulate(&plan, &plan.balls()[0], &mut sampler);
+/// let frames = sampler.frames();
+/// assert_eq!((frames.len(), frames[1].time, frames[1].state.position.z), (7, 0.5, 3.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrameSampler {
     fps: f64,

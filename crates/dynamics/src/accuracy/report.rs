@@ -240,6 +240,31 @@ impl fmt::Display for Remark {
 }
 
 /// The measurement of a scene.
+///
+/// ```
+/// # use carom_dynamics::body::Ball;
+/// # use carom_dynamics::effects::{friction::Friction, gravity::Gravity, restitution::Restitution};
+/// # use carom_dynamics::scene::Scene;
+/// # use carom_dynamics::surface::{Material, Shape, Surface};
+/// # use carom_geometry::plane::Plane;
+/// # use nalgebra::{Point3, Vector3};
+/// # let floor = Plane::from_point_normal(Point3::origin(), Vector3::z())?;
+/// # let material = Material { restitution: Restitution::new(0.5)?, friction: Friction::None };
+/// # let scene = Scene {
+/// #     gravity: Some(Gravity::uniform(Vector3::new(0.0, 0.0, -8.0))?),
+/// #     surfaces: vec![Surface { name: "floor".into(), material, shape: Shape::Plane(floor) }],
+/// #     balls: vec![Ball::new(Point3::new(0.0, 0.0, 4.0), Vector3::zeros(), 0.0, None)?],
+/// #     ..Scene::lasting(3.0)
+/// # };
+/// use carom_dynamics::accuracy::{Effort, measure};
+///
+/// // No timed runs: cost is counted as work.
+/// let effort = Effort { octaves: 2, decades: 2, repeats: 0, resolutions: false, ..Effort::default() };
+/// let report = measure(&scene, &effort, &mut || 0.0)?;
+/// let cheapest = report.cheapest(1e-3).ok_or("some method is right to a millimetre")?;
+/// assert_eq!(cheapest.variant.name(), "exact");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Report {
     /// What the methods are compared with.

@@ -1,8 +1,9 @@
 //! The decay of spin in the air: omega(t) = omega(0) e^(-t / tau).
 //!
-//! The torque of the air is taken in proportion to the spin, so that a ball loses the same share of it in every second: 3 to 4 % on golf
-//! balls, tau of 25 to 30 s (A. M. Nathan, *The effect of spin-down on the flight of a baseball*, 2008, after A. J. Smits, D. R. Smith,
-//! *A new aerodynamic model of a golf ball in flight*, Science and Golf II, 1994).
+//! The torque of the air is taken in proportion to the spin, so that a ball loses the same share of it in every second: 3.3 to 4 % on golf
+//! balls, which is tau of 25 to 30 s (D. Tutelman, *Spin Decay for a Ball in Flight*, 2016). How tau depends on the ball and its speed: A. M.
+//! Nathan, *The Effect of Spin-Down on the Flight of a Baseball* (2008), from measurements by A. J. Smits and D. R. Smith, *A new aerodynamic
+//! model of a golf ball in flight*, Science and Golf II (1994).
 
 use crate::error::{ValueError, require};
 use crate::power::exponential;
