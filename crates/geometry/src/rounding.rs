@@ -186,6 +186,13 @@ pub fn hold_bound(distance: f64) -> f64 {
     2.0 * NORMAL_BOUND * distance + contact_bound(distance)
 }
 
+/// How far the centre of a ball may lie outside the region of the place that it touches, by rounding: 8 [`position_bound`].
+///
+/// What touches within the rounding of a position, 64 units of the extent, has been put there along a normal that was off by as much: twice that.
+pub(crate) fn cone_bound(extent: f64) -> f64 {
+    8.0 * position_bound(extent)
+}
+
 /// The radius in m that stands for a point against a mesh whose largest |coordinate| is `farthest`: 2^14 units of
 /// roundoff, so that the centre stays on its own side whatever the rounding of its position (64 units), and so that what the ball
 /// touches to within that rounding has normals within sqrt(2 64 / 2^14), a twelfth of a radian.
@@ -237,6 +244,7 @@ mod tests {
         let units = |bound: f64| bound / UNIT_ROUNDOFF;
         assert_eq!([position_bound(3.0), segment_bound(3.0), contact_bound(3.0)].map(units), [48.0, 24.0, 48.0]);
         assert_eq!([contact_doubt(3.0), hold_bound(2.0), point_radius(3.0)].map(units), [240.0, 256.0, 49152.0]);
+        assert_eq!(units(cone_bound(3.0)), 384.0);
         let in_f32 = |reach, radius| segment_bound_f32(reach, radius) / UNIT_ROUNDOFF_F32;
         assert_eq!([in_f32(0.0, 0.0), in_f32(3.0, 0.0), in_f32(0.0, 3.0), in_f32(3.0, 5.0)], [2.0, 50.0, 8.0, 60.0]);
         // e = 14 u times the extent; (2 e, and e times diameter times perimeter over area) and 2 e over each height.

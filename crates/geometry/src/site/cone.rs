@@ -1,7 +1,9 @@
 //! The directions in which a place of a mesh can touch a ball: its normal cone.
 
 use super::Site;
+use crate::bounds::{amax, largest};
 use crate::mesh::Mesh;
+use crate::rounding::cone_bound;
 use nalgebra::Vector3;
 
 impl Mesh {
@@ -10,7 +12,7 @@ impl Mesh {
     ///
     /// At an edge the cone lies between the normals of its faces, at a vertex between those of its edges. Where a ball is small beside the rounding
     /// of its place, or the mesh so flat that the cone is narrower than that rounding, `away` may lie outside; the normal is then that of the edge or
-    /// face whose region it lies in. The faces' own normals are good to the last bits, however small the ball.
+    /// face whose region it lies in, if that is no farther than rounding goes. The faces' own normals are good to the last bits, however small the ball.
     pub(crate) fn cone_normal(&self, site: Site, away: &Vector3<f64>) -> Option<Vector3<f64>> {
         match site {
             Site::Face(face) => self.facing(face, away),
@@ -30,7 +32,7 @@ impl Mesh {
                         }
                     }
                 }
-                match most.1 {
+                match most.1.filter(|_| most.0 <= self.cone_bound(away)) {
                     None => away.try_normalize(0.0),
                     Some((face, edge, along)) => self.edge_cone_normal(face, edge, &(away - along * along.dot(away))),
                 }
@@ -54,10 +56,16 @@ impl Mesh {
                 most = (inwards, Some(other));
             }
         }
-        match most.1 {
+        match most.1.filter(|_| most.0 <= self.cone_bound(away)) {
             None => away.try_normalize(0.0),
             Some(face) => self.facing(face, away),
         }
+    }
+
+    /// How far rounding may put a ball outside of the region of what it touches.
+    fn cone_bound(&self, away: &Vector3<f64>) -> f64 {
+        let (low, high) = (self.bounds().min(), self.bounds().max());
+        cone_bound(largest(amax(&low.coords), amax(&high.coords)) + amax(away))
     }
 
     /// The normal of `face` on the side to which `away` points.
@@ -107,10 +115,11 @@ mod tests {
         let end = Site::Vertex { vertex: 0, face: 0 };
         let before = Vector3::new(0.0, -0.3, 0.4);
         assert_eq!(m.cone_normal(end, &before), Some(Vector3::new(0.0, -0.6, 0.8)));
-        // Beside the ridge: across it.
-        assert_eq!(m.cone_normal(end, &Vector3::new(0.0, 0.3, 0.4)), Some(Vector3::z()));
-        let slope = m.cone_normal(end, &Vector3::new(0.3, 0.3, 0.4)).unwrap();
-        assert_eq!(slope.z.signum(), 1.0);
-        assert!(slope == m.normal(2).unwrap().into_inner() || slope == -m.normal(2).unwrap().into_inner());
+        // Beside it by rounding, across the ridge or over a slope; beside it by more than that, as it is.
+        let least = 0.5f64.powi(48);
+        assert_eq!(m.cone_normal(end, &(Vector3::new(0.0, 0.3, 0.4) * least)), Some(Vector3::z()));
+        let slope = m.cone_normal(end, &(Vector3::new(0.3, 0.3, 0.4) * least)).unwrap();
+        assert!(slope.z > 0.0 && [1.0, -1.0].map(|side| m.normal(2).unwrap().into_inner() * side).contains(&slope));
+        assert_eq!(m.cone_normal(end, &Vector3::new(0.0, 0.3, 0.4)), Some(Vector3::new(0.0, 0.6, 0.8)));
     }
 }
