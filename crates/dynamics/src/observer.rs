@@ -156,6 +156,17 @@ impl Observer for () {
     fn segment(&mut self, _: &Segment) {}
 }
 
+/// A watcher that is kept elsewhere, or is not known by its type: `&mut dyn Observer` watches too.
+impl<O: Observer + ?Sized> Observer for &mut O {
+    fn event(&mut self, event: &Event) {
+        (**self).event(event);
+    }
+
+    fn segment(&mut self, segment: &Segment) {
+        (**self).segment(segment);
+    }
+}
+
 /// Two watchers side by side.
 impl<A: Observer, B: Observer> Observer for (A, B) {
     fn event(&mut self, event: &Event) {
