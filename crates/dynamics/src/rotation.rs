@@ -14,8 +14,8 @@ const TERMS: u32 = 8;
 /// It is the exponential of half of `turn` as a quaternion: that of a small share of it by Taylor's series, squared as often as the share was halved.
 ///
 /// ```
+/// use carom_dynamics::nalgebra::Vector3;
 /// use carom_dynamics::rotation::rotation;
-/// use nalgebra::Vector3;
 ///
 /// // A quarter turn about z takes x to y.
 /// let quarter = rotation(&Vector3::new(0.0, 0.0, std::f64::consts::FRAC_PI_2));

@@ -86,9 +86,9 @@ impl MovingBall<'_> {
 ///
 /// ```
 /// use carom_geometry::contact::{Contact, MovingBall, first_contact};
+/// use carom_geometry::nalgebra::{Point3, Vector3};
 /// use carom_geometry::path::Path;
 /// use carom_geometry::triangle::Feature;
-/// use nalgebra::{Point3, Vector3};
 ///
 /// let triangle = [Point3::origin(), Point3::new(4.0, 0.0, 0.0), Point3::new(0.0, 4.0, 0.0)];
 /// let falling = |x: f64| Path::line(Point3::new(x, 1.0, 3.0), Vector3::new(0.0, 0.0, -4.0));
