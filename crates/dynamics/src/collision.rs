@@ -1,12 +1,11 @@
 //! Collision detection and determination: the earliest f over all surfaces, and what is touched there.
 
 use crate::body::State;
-use crate::contacts::{Contact, Contacts, MAX_CONTACTS};
+use crate::contacts::{Contact, Contacts, MAX_CONTACTS, PerContact};
 use crate::counters::Counters;
 use crate::integrators::Step;
 use crate::plan::Plan;
 use crate::tolerance::{merge_angle_squared, rate_rounding, touch_distance};
-use arrayvec::ArrayVec;
 use carom_geometry::clearance::{Clearance, Entry};
 use carom_geometry::contact::{Hold, MovingBall};
 use carom_geometry::mesh::Fold;
@@ -42,7 +41,7 @@ pub struct Return {
 }
 
 /// The returns of one step, one for each contact.
-pub type Returns = ArrayVec<Return, MAX_CONTACTS>;
+pub type Returns = PerContact<Return>;
 
 /// The clearance from a contact along the step: 0 now by definition, and its slope the contact's own rate (plus what a path that
 /// does not begin with the velocity adds).
@@ -230,8 +229,7 @@ impl<'a> Obstacles<'a> {
         }
         for (surface, mesh) in &self.plan.meshes {
             let here = |r: &Return| r.hold.face.filter(|_| r.free.is_some_and(|(s, ..)| s == *surface));
-            let holds: ArrayVec<Hold, MAX_CONTACTS> =
-                returns.iter().map(|r| Hold { face: here(r), ..r.hold }).collect();
+            let holds: PerContact<Hold> = returns.iter().map(|r| Hold { face: here(r), ..r.hold }).collect();
             let ball = MovingBall { path: &step.path, radius: self.mesh_radius, holds: &holds };
             let to = earliest.map_or(step.to, |hit| hit.f);
             let mut work = Work::default();
@@ -299,7 +297,7 @@ impl<'a> Obstacles<'a> {
                 let angle = merge_angle_squared(tolerance, radius);
                 (kept.normal - c.normal).norm_squared() <= angle
             };
-            if !contacts.is_full() && !contacts.iter().any(same) {
+            if contacts.len() < MAX_CONTACTS && !contacts.iter().any(same) {
                 contacts.push(c);
             }
         }

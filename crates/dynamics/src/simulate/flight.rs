@@ -3,7 +3,7 @@
 use super::Walk;
 use crate::body::State;
 use crate::collision::{Hit, Returns};
-use crate::contacts::{Contact, Contacts};
+use crate::contacts::{Contact, Contacts, MAX_CONTACTS, PerContact};
 use crate::events::{Bound, Ending, EventKind, Motion};
 use crate::integrators::Step;
 use crate::observer::Observer;
@@ -112,9 +112,9 @@ impl<O: Observer> Walk<'_, O> {
             let n = contact.normal;
             self.state.velocity += n * (contact.rate - n.dot(&self.state.velocity));
         }
-        let closing: Vec<bool> = contacts.iter().map(|c| c.rate < 0.0).collect();
+        let closing: PerContact<bool> = contacts.iter().map(|c| c.rate < 0.0).collect();
         if closing.contains(&true) {
-            let materials: Vec<_> = contacts.iter().map(|c| self.surfaces[c.surface].material).collect();
+            let materials: PerContact<_> = contacts.iter().map(|c| self.surfaces[c.surface].material).collect();
             let velocity_in = self.state.velocity;
             self.state.velocity = if collapses {
                 collapse(velocity_in, &mut contacts)
@@ -172,7 +172,7 @@ impl<O: Observer> Walk<'_, O> {
         }
         let place = |c: &Contact| (c.surface, c.site);
         for c in contacts.iter() {
-            if !self.answered.is_full() && self.answered.iter().all(|a| place(a) != place(c)) {
+            if self.answered.len() < MAX_CONTACTS && self.answered.iter().all(|a| place(a) != place(c)) {
                 self.answered.push(*c);
             }
         }
@@ -183,7 +183,7 @@ impl<O: Observer> Walk<'_, O> {
         for a in &self.answered {
             // Of what two faces of one plane answered, once.
             let apart = |c: &Contact| (a.normal - c.normal).norm_squared() > merge_angle_squared(tolerance, radius);
-            if !contacts.is_full() && contacts.iter().all(|c| place(a) != place(c) && apart(c)) {
+            if contacts.len() < MAX_CONTACTS && contacts.iter().all(|c| place(a) != place(c) && apart(c)) {
                 contacts.push(Contact { rate: a.normal.dot(&self.state.velocity), lasting: false, ..*a });
             }
         }

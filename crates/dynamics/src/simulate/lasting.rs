@@ -3,7 +3,7 @@
 use super::Walk;
 use crate::body::State;
 use crate::collision::Hit;
-use crate::contacts::{Contact, Contacts};
+use crate::contacts::{Contact, Contacts, PerContact};
 use crate::events::{EventKind, Motion};
 use crate::integrators::{Step, exact};
 use crate::observer::Observer;
@@ -18,7 +18,7 @@ const MAX_CROSSINGS: usize = 4096;
 
 impl<O: Observer> Walk<'_, O> {
     /// The contacts as carriers.
-    pub(super) fn carriers(&self) -> Vec<Carrier> {
+    pub(super) fn carriers(&self) -> PerContact<Carrier> {
         self.contacts
             .iter()
             .map(|contact| Carrier {
@@ -32,7 +32,7 @@ impl<O: Observer> Walk<'_, O> {
 
     /// Takes from the velocity what would leave or enter a lasting contact.
     pub(super) fn make_tangential(&mut self) {
-        let lasting: Vec<Vector3<f64>> = self.contacts.iter().filter(|c| c.lasting).map(|c| c.normal).collect();
+        let lasting: PerContact<Vector3<f64>> = self.contacts.iter().filter(|c| c.lasting).map(|c| c.normal).collect();
         self.state.velocity = along(&lasting, self.state.velocity);
     }
 
@@ -61,7 +61,7 @@ impl<O: Observer> Walk<'_, O> {
     /// The four-part rest test: slow, in contact, pressed, and held by friction. A ball that passes it rests.
     fn try_to_rest(&mut self, velocity_in: Vector3<f64>) -> bool {
         self.counters.rest += 1;
-        let carriers: Vec<Carrier> = self.lasting_carriers();
+        let carriers = self.lasting_carriers();
         let still = State { velocity: Vector3::zeros(), ..self.state };
         let a = self.forces.acceleration(&still, &mut self.counters);
         let balance = Balance::of(&a, &carriers, &still);
@@ -85,7 +85,7 @@ impl<O: Observer> Walk<'_, O> {
         true
     }
 
-    fn lasting_carriers(&self) -> Vec<Carrier> {
+    fn lasting_carriers(&self) -> PerContact<Carrier> {
         self.carriers().into_iter().filter(|c| c.contact.lasting).collect()
     }
 

@@ -1,7 +1,7 @@
 //! The end of bouncing: which contacts hold the ball, and the last hops, summed.
 
 use super::{Settling, Walk};
-use crate::contacts::{Contact, MAX_CONTACTS};
+use crate::contacts::{Contact, MAX_CONTACTS, PerContact};
 use crate::effects::friction::{ContactFriction, Friction};
 use crate::events::Motion;
 use crate::integrators::exact;
@@ -91,9 +91,9 @@ impl<O: Observer> Walk<'_, O> {
         carriers: &[Carrier],
         carrying: &[bool; MAX_CONTACTS],
     ) -> Option<(usize, Hop)> {
-        let held: Vec<Carrier> = carriers.iter().zip(carrying).filter(|(_, c)| **c).map(|(c, _)| *c).collect();
-        let normals: Vec<Vector3<f64>> = held.iter().map(|c| c.contact.normal).collect();
-        let free = Balance::of(a, &held, &self.state).free;
+        let held: PerContact<Carrier> = carriers.iter().zip(carrying).filter(|(_, c)| **c).map(|(c, _)| *c).collect();
+        let normals: PerContact<Vector3<f64>> = held.iter().map(|c| c.contact.normal).collect();
+        let free = if held.is_empty() { *a } else { Balance::of(a, &held, &self.state).free };
         let velocity = along(&normals, self.state.velocity);
         let neutral = if held.is_empty() { 0.0 } else { rate_rounding(a.norm()) };
         let mut next: Option<(usize, Hop)> = None;
@@ -152,7 +152,7 @@ impl<O: Observer> Walk<'_, O> {
     /// Whether taking the ball along the contacts that carry would drive it into one that does not.
     fn drives_into_others(&self, carrying: &[bool]) -> bool {
         let contacts = || self.contacts.iter().zip(carrying);
-        let held: Vec<_> = contacts().filter(|(_, carrying)| **carrying).map(|(c, _)| c.normal).collect();
+        let held: PerContact<_> = contacts().filter(|(_, carrying)| **carrying).map(|(c, _)| c.normal).collect();
         let v = along(&held, self.state.velocity);
         let rounding = rate_rounding(self.state.velocity.norm());
         contacts().any(|(c, carrying)| !carrying && c.normal.dot(&v) < -rounding)
