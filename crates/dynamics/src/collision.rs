@@ -12,7 +12,7 @@ use carom_geometry::mesh::Fold;
 use carom_geometry::plane::Side;
 use carom_geometry::rounding::contact_doubt;
 use carom_geometry::site::{Bend, RegionBound, Site};
-use carom_geometry::sweep::Work;
+use carom_geometry::sweep::{Surroundings, Work};
 use nalgebra::{Point3, Vector3};
 use smallvec::SmallVec;
 
@@ -92,6 +92,8 @@ pub struct Obstacles<'a> {
     plan: &'a Plan,
     /// On which side of each plane the ball is: decided once, and never again.
     sides: Vec<Side>,
+    /// What the ball has seen of each mesh.
+    around: Vec<Surroundings>,
     radius: f64,
     mesh_radius: f64,
 }
@@ -111,7 +113,10 @@ impl<'a> Obstacles<'a> {
             })
         };
         let sides = plan.planes.iter().map(|(_, plane)| side(plane)).collect();
-        Self { plan, sides, radius, mesh_radius: radius.max(plan.point_radius) }
+        let mesh_radius = radius.max(plan.point_radius);
+        let extent = plan.farthest + state.position.coords.amax() + mesh_radius;
+        let around = vec![Surroundings::new(extent); plan.meshes.len()];
+        Self { plan, sides, around, radius, mesh_radius }
     }
 
     /// The radius with which the ball meets the surface.
@@ -198,7 +203,7 @@ impl<'a> Obstacles<'a> {
 
     /// The earliest collision of the step: over all surfaces, the smallest f at which the clearance is <= 0 and falling.
     pub fn earliest(
-        &self,
+        &mut self,
         step: &Step,
         contacts: &[Contact],
         returns: &Returns,
@@ -227,7 +232,7 @@ impl<'a> Obstacles<'a> {
                 earliest = Some(Hit { f, surface: *surface, face: None, rate: Some(rate) });
             }
         }
-        for (surface, mesh) in &self.plan.meshes {
+        for ((surface, mesh), around) in self.plan.meshes.iter().zip(&mut self.around) {
             let here = |r: &Return| r.hold.face.filter(|_| r.free.is_some_and(|(s, ..)| s == *surface));
             let holds: PerContact<Hold> = returns.iter().map(|r| Hold { face: here(r), ..r.hold }).collect();
             let ball = MovingBall { path: &step.path, radius: self.mesh_radius, holds: &holds };
@@ -237,7 +242,7 @@ impl<'a> Obstacles<'a> {
                 let of_this = returns.iter().filter_map(|r| r.free.as_ref()).filter(|(s, ..)| s == surface);
                 of_this.filter(|(_, site, _)| mesh.is_at(face, *site)).map(|(.., f)| *f).fold(0.0, f64::max)
             };
-            let found = mesh.first_contact(&ball, to, free_until, &mut work);
+            let found = mesh.first_contact_around(&ball, to, free_until, around, &mut work);
             counters.add(&work);
             if let Some(found) = found
                 && earlier(found.f, *surface, &earliest)
@@ -256,7 +261,8 @@ impl<'a> Obstacles<'a> {
         contact_doubt(size + step.path.reach(hit.f))
     }
 
-    /// The contacts of a ball at `position` with `velocity`, to within `tolerance` (m), each with its rate n.v.
+    /// The contacts of a ball at `position` with `velocity`, to within `tolerance` (m), each with its rate n.v. If that is where it is at
+    /// `f` of the step that the [`earliest`](Self::earliest) hit was asked for, they need not be looked for again.
     ///
     /// Of contacts whose normals are one to within what the tolerance makes of them, the one that closes fastest stays.
     pub fn touching(
@@ -264,6 +270,7 @@ impl<'a> Obstacles<'a> {
         position: &Point3<f64>,
         velocity: &Vector3<f64>,
         tolerance: f64,
+        f: Option<f64>,
         counters: &mut Counters,
     ) -> Contacts {
         let contact = |surface, site, normal: Vector3<f64>| Contact {
@@ -279,9 +286,13 @@ impl<'a> Obstacles<'a> {
                 all.push(contact(*surface, None, plane.normal().into_inner() * side.sign()));
             }
         }
-        for (surface, mesh) in &self.plan.meshes {
+        for ((surface, mesh), around) in self.plan.meshes.iter().zip(&self.around) {
             let mut work = Work::default();
-            for touch in mesh.touches(position, velocity, self.mesh_radius, tolerance, &mut work) {
+            let touches = match f {
+                Some(f) => mesh.touches_at(f, around, position, velocity, self.mesh_radius, tolerance, &mut work),
+                None => mesh.touches(position, velocity, self.mesh_radius, tolerance, &mut work),
+            };
+            for touch in touches {
                 all.push(contact(*surface, Some(touch.site), touch.normal));
             }
             counters.add(&work);

@@ -59,6 +59,27 @@ impl Stretch {
         [(a, b, c), (b, c, a), (c, a, b)].into_iter().any(|(p, q, opposite)| self.is_beyond(p, q, opposite, normal))
     }
 
+    /// Whether a ball of `radius` seems to meet the inside of the triangle, if it comes to its plane at all: a guess, for which its chord will do.
+    #[inline]
+    pub(crate) fn leads_into(&self, corners: &[Vector3<f64>; 3], normal: &Vector3<f64>, radius: f64) -> bool {
+        let [a, b, c] = corners;
+        let height = normal.dot(a);
+        let (from, to) = (normal.dot(&self.from) - height, normal.dot(&self.to) - height);
+        let side = if from < 0.0 { -1.0 } else { 1.0 };
+        let (from, to) = (side * from - radius, side * to - radius);
+        let part = if from <= 0.0 {
+            0.0
+        } else if to < from {
+            least(from / (from - to), 1.0)
+        } else {
+            1.0
+        };
+        let foot = self.from + (self.to - self.from) * part;
+        let turn = |p: &Vector3<f64>, q: &Vector3<f64>| (q - p).cross(&(foot - p)).dot(normal);
+        let turns = [turn(a, b), turn(b, c), turn(c, a)];
+        turns.iter().all(|t| *t >= 0.0) || turns.iter().all(|t| *t <= 0.0)
+    }
+
     /// Whether the ball stays beyond the edge from `p` to `q`, seen from the third corner.
     #[inline]
     fn is_beyond(&self, p: &Vector3<f64>, q: &Vector3<f64>, opposite: &Vector3<f64>, normal: &Vector3<f64>) -> bool {

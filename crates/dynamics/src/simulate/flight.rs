@@ -75,7 +75,7 @@ impl<O: Observer> Walk<'_, O> {
     pub(super) fn begin(&mut self) {
         let tolerance = self.touch_tolerance(0.0);
         let State { position, velocity } = self.state;
-        let mut contacts = self.obstacles.touching(&position, &velocity, tolerance, &mut self.counters);
+        let mut contacts = self.obstacles.touching(&position, &velocity, tolerance, None, &mut self.counters);
         let rounding = rate_rounding(velocity.norm());
         contacts.retain(|c| {
             let gap = self.obstacles.gap(c, &position);
@@ -96,8 +96,10 @@ impl<O: Observer> Walk<'_, O> {
     pub(super) fn arrive(&mut self, step: &Step, hit: Hit, returns: &Returns) {
         let tolerance = self.touch_tolerance(step.path.reach(hit.f)).max(self.obstacles.doubt(step, &hit));
         let before = std::mem::take(&mut self.contacts);
-        let mut contacts =
-            self.obstacles.touching(&self.state.position, &self.state.velocity, tolerance, &mut self.counters);
+        let State { position, velocity } = self.state;
+        // What slides is put back onto its surface, and is then elsewhere.
+        let f = (position == step.path.at(hit.f)).then_some(hit.f);
+        let mut contacts = self.obstacles.touching(&position, &velocity, tolerance, f, &mut self.counters);
         for contact in &mut contacts {
             self.correct(contact, tolerance);
             contact.rate = self.rate(step, hit, contact, &before, returns);

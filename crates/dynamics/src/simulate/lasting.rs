@@ -304,7 +304,7 @@ impl<O: Observer> Walk<'_, O> {
         }
         let tolerance = self.touch_tolerance(0.0);
         let State { position, velocity } = self.state;
-        let touched = self.obstacles.touching(&position, &velocity, tolerance, &mut self.counters);
+        let touched = self.obstacles.touching(&position, &velocity, tolerance, None, &mut self.counters);
         let rounding = rate_rounding(velocity.norm());
         let rises = |c: &&Contact| c.surface == contact.surface && c.site != contact.site && c.rate < -rounding;
         touched.iter().find(rises).and_then(|c| Some((c.surface, c.site?.face())))

@@ -1,0 +1,243 @@
+//! The search for the first contact: pieces of the path front to back, and on each the faces that the tree lets through.
+
+use super::surroundings::Left;
+use super::{FirstContact, Surroundings, Work};
+use crate::bounds::{amax, largest, least};
+use crate::bvh::FatSegment;
+use crate::contact::{Contact, MovingBall, contact_from};
+use crate::mesh::Mesh;
+use crate::rounding::{contact_doubt, position_bound, screen_bound};
+use crate::screen::Stretch;
+use nalgebra::Point3;
+use smallvec::SmallVec;
+
+/// A path is cut no finer than into pieces whose sagitta is this share of the larger of the radius and a face's size.
+const SAGITTA_SHARE: f64 = 0.25;
+
+/// A little later than 1: where a path is back where it was, with room for rounding and for a surface that falls away.
+const JUST_AFTER: f64 = 1.0 + 1.0 / 64.0;
+
+/// No vector is longer than this beside its largest |component|: more than the square root of 3.
+const LENGTH_OF_ONES: f64 = 1.75;
+
+impl Mesh {
+    /// [`first_contact`](Self::first_contact) of a ball that has been there: `around` is what it has seen of this mesh, and goes on seeing.
+    pub fn first_contact_around(
+        &self,
+        ball: &MovingBall,
+        to: f64,
+        free_until: impl Fn(u32) -> f64,
+        around: &mut Surroundings,
+        work: &mut Work,
+    ) -> Option<FirstContact> {
+        let start = ball.path.start();
+        let size = self.farthest_from(&start).max(ball.radius);
+        // What the ball leaves it often comes back to: a first cut just after that.
+        let best = self.where_it_left(ball, to, &free_until, work);
+        let last = best.map_or(to, |found| found.f);
+        let mut search = Search {
+            mesh: self,
+            ball,
+            free_until,
+            best,
+            to,
+            from: 0.0,
+            end: last,
+            limit: last,
+            reach: 0.0,
+            stretch: None,
+            left: std::mem::take(&mut around.left),
+            later: SmallVec::new(),
+            work: *work,
+        };
+        if best.is_some() {
+            let reach = ball.path.reach(last);
+            let (within, doubt) = (around.within(reach), screen_bound(size + reach));
+            let length = LENGTH_OF_ONES * reach;
+            let known = around.faces(self, &start, ball.radius, length, within + doubt, &mut search.work);
+            if let Some(faces) = known {
+                search.begin(0.0, last, within, doubt);
+                faces.iter().for_each(|&face| search.consider(face));
+                search.conclude();
+                (around.left, *work) = (search.left, search.work);
+                return search.best;
+            }
+        }
+        let sagitta_limit = SAGITTA_SHARE * ball.radius.max(self.face_size());
+        // Front to back: the stretch to look at next is the last of the stack.
+        let mut stack = [(0.0, last); 64];
+        let mut depth = 1;
+        let back = ball.holds.iter().map(|hold| hold.until).fold(f64::INFINITY, least) * JUST_AFTER;
+        if back > 0.0 && back < last {
+            stack[0].0 = back;
+            stack[1] = (0.0, back);
+            depth = 2;
+        }
+        while depth > 0 {
+            depth -= 1;
+            let (from, end) = stack[depth];
+            let chord = ball.path.chord(from, end);
+            let (a, b) = (start + chord.from, start + chord.to);
+            // What a contact in doubt may be off by counts as near, so that the boxes leave out no face that would report one.
+            let reach = ball.path.reach(end);
+            let within = around.within(reach);
+            let margin = position_bound(largest(largest(amax(&a.coords), amax(&b.coords)), reach))
+                + contact_doubt(size + reach)
+                + within;
+            let radius = ball.radius + chord.sagitta + margin;
+            // The margin has room for the rounding of this as well.
+            if self.bounds().is_off(&a, &b, radius) {
+                search.left.nothing(from, end, within);
+                continue;
+            }
+            let middle = 0.5 * (from + end);
+            if chord.sagitta > sagitta_limit && depth + 2 <= stack.len() && middle > from && middle < end {
+                stack[depth] = (middle, end);
+                stack[depth + 1] = (from, middle);
+                depth += 2;
+                continue;
+            }
+            search.begin(from, end, within, screen_bound(size + reach));
+            let nodes = self.bvh().visit(&FatSegment { from: a, to: b, radius }, |face| {
+                search.consider(face);
+                search.part_of_interest()
+            });
+            search.work.nodes += nodes;
+            search.conclude();
+            if search.best.is_some_and(|found| found.f <= end) {
+                break;
+            }
+        }
+        (around.left, *work) = (search.left, search.work);
+        search.best
+    }
+
+    /// The first contact with a face that the ball leaves by a short hop: most such hops end there.
+    fn where_it_left(
+        &self,
+        ball: &MovingBall,
+        to: f64,
+        free_until: &impl Fn(u32) -> f64,
+        work: &mut Work,
+    ) -> Option<FirstContact> {
+        let hold = ball.holds.iter().min_by(|a, b| a.until.total_cmp(&b.until))?;
+        let face = hold.face?;
+        if !(hold.until > 0.0 && hold.until <= to && ball.path.reach(hold.until) <= self.face_size()) {
+            return None;
+        }
+        work.triangles += 1;
+        let triangle = self.triangle(face);
+        let free = ball.held_off(&triangle, free_until(face));
+        match contact_from(ball, &ball.asked(&triangle), free, to, &mut work.rounds) {
+            Contact::At { f, .. } => Some(FirstContact { f: f.min(to), face }),
+            Contact::Miss => None,
+        }
+    }
+}
+
+/// A search along a path, a piece at a time.
+struct Search<'a, F> {
+    mesh: &'a Mesh,
+    ball: &'a MovingBall<'a>,
+    free_until: F,
+    /// The first contact of the faces asked so far.
+    best: Option<FirstContact>,
+    to: f64,
+    /// The piece; `limit` is the end of what is of interest of it.
+    from: f64,
+    end: f64,
+    limit: f64,
+    /// How near a face has to be ruled out.
+    reach: f64,
+    stretch: Option<Stretch>,
+    left: Left,
+    /// Faces that the ball does not seem to hit inside: asked when the one is known that it does hit.
+    later: SmallVec<[u32; 8]>,
+    work: Work,
+}
+
+impl<F: Fn(u32) -> f64> Search<'_, F> {
+    /// Goes on to the piece over [`from`, `end`]. What is ruled out is so to `within` of touching, as computed to `doubt`.
+    fn begin(&mut self, from: f64, end: f64, within: f64, doubt: f64) {
+        (self.from, self.end, self.limit) = (from, end, end);
+        self.reach = self.ball.radius + within + doubt;
+        self.stretch = Some(Stretch::new(self.ball.path, from, end, self.reach));
+        self.left.nothing(from, end, within);
+    }
+
+    /// The part of the piece that is still of interest.
+    fn part_of_interest(&self) -> f64 {
+        (self.limit - self.from) / (self.end - self.from)
+    }
+
+    /// Looks at a face that may be met in the piece.
+    fn consider(&mut self, face: u32) {
+        if self.best.is_some_and(|found| found.face == face) {
+            self.left.faces.push((face, f64::INFINITY));
+            return;
+        }
+        self.work.triangles += 1;
+        let Some(stretch) = &self.stretch else { return };
+        let triangle = self.mesh.triangle(face);
+        let local = stretch.local(&triangle);
+        if let Some(normal) = self.mesh.plain_normal(face) {
+            if stretch.is_free_of(&local, normal) {
+                return;
+            }
+            if self.best.is_none() && !stretch.leads_into(&local, normal, self.ball.radius) {
+                self.later.push(face);
+                return;
+            }
+        }
+        self.ask(face, &triangle);
+    }
+
+    /// Asks a face.
+    fn ask(&mut self, face: u32, triangle: &[Point3<f64>; 3]) {
+        // Asked from the start of the path, not of the piece: the answer does not depend on the pieces.
+        let free = self.ball.held_off(triangle, (self.free_until)(face));
+        if free > self.limit {
+            self.left.faces.push((face, f64::INFINITY));
+            return;
+        }
+        let asked = self.ball.asked(triangle);
+        if self.best.is_some() {
+            self.work.rounds += 1;
+            if self.ball.stays_off(&asked, free, self.limit, self.reach) {
+                self.left.faces.push((face, free));
+                return;
+            }
+        }
+        self.left.faces.push((face, f64::INFINITY));
+        if let Contact::At { f, .. } = contact_from(self.ball, &asked, free, self.limit, &mut self.work.rounds)
+            && self.best.is_none_or(|found| (f.min(self.to), face) < (found.f, found.face))
+        {
+            self.best = Some(FirstContact { f: f.min(self.to), face });
+            if f < self.limit {
+                self.limit = f;
+                self.stretch = Some(Stretch::new(self.ball.path, self.from, f, self.reach));
+            }
+        }
+    }
+
+    /// Asks what was put off, as far as it is still of interest.
+    fn conclude(&mut self) {
+        for face in std::mem::take(&mut self.later) {
+            let Some(stretch) = &self.stretch else { return };
+            let triangle = self.mesh.triangle(face);
+            let is_free = |n| stretch.is_free_of(&stretch.local(&triangle), n);
+            if !(self.best.is_some() && self.mesh.plain_normal(face).is_some_and(is_free)) {
+                self.ask(face, &triangle);
+            }
+        }
+        self.left.to = self.limit;
+    }
+}
+
+impl Left {
+    /// Nothing is left on [`from`, `to`], so far.
+    fn nothing(&mut self, from: f64, to: f64, within: f64) {
+        (self.from, self.to, self.within) = (from, to, within);
+        self.faces.clear();
+    }
+}
