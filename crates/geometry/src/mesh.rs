@@ -208,13 +208,21 @@ impl Mesh {
         }
     }
 
-    /// [`normal`](Self::normal) without its promise of unit length.
+    /// [`normal`](Self::normal) without its promise of unit length: zero of a face of no area.
     #[inline]
-    pub(crate) fn plain_normal(&self, face: u32) -> Option<&Vector3<f64>> {
+    pub(crate) fn plain_normal(&self, face: u32) -> &Vector3<f64> {
         match &self.normals {
-            Normals::Shared(n) => Some(n),
-            Normals::Each(all) => Some(&all[face as usize]).filter(|n| **n != Vector3::zeros()),
+            Normals::Shared(n) => n,
+            Normals::Each(all) => &all[face as usize],
         }
+    }
+
+    /// The corners of a face as seen from `origin`.
+    #[inline]
+    pub(crate) fn triangle_from(&self, face: u32, origin: &Point3<f64>) -> [Vector3<f64>; 3] {
+        let [a, b, c] = self.faces[face as usize];
+        let corner = |v: u32| self.vertices[v as usize] - origin;
+        [corner(a), corner(b), corner(c)]
     }
 
     /// The least box around all faces.

@@ -4,15 +4,16 @@ use super::surroundings::Left;
 use super::{FirstContact, Surroundings, Work};
 use crate::bounds::{amax, largest, least};
 use crate::bvh::FatSegment;
-use crate::contact::{Contact, MovingBall, contact_from};
+use crate::closest::Asked;
+use crate::contact::{Contact, Hold, MovingBall, contact_from};
 use crate::mesh::Mesh;
-use crate::rounding::{contact_doubt, position_bound, screen_bound};
+use crate::rounding::{contact_doubt, hold_bound, position_bound, screen_bound};
 use crate::screen::Stretch;
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 use smallvec::SmallVec;
 
 /// A path is cut no finer than into pieces whose sagitta is this share of the larger of the radius and a face's size.
-const SAGITTA_SHARE: f64 = 0.25;
+const SAGITTA_SHARE: f64 = 0.0625;
 
 /// A little later than 1: where a path is back where it was, with room for rounding and for a surface that falls away.
 const JUST_AFTER: f64 = 1.0 + 1.0 / 64.0;
@@ -38,6 +39,8 @@ impl Mesh {
         let mut search = Search {
             mesh: self,
             ball,
+            start,
+            size,
             free_until,
             best,
             to,
@@ -45,8 +48,9 @@ impl Mesh {
             end: last,
             limit: last,
             reach: 0.0,
-            stretch: None,
+            stretch: Stretch::new(ball.path, 0.0, last, 0.0),
             left: std::mem::take(&mut around.left),
+            hidden: SmallVec::new(),
             later: SmallVec::new(),
             work: *work,
         };
@@ -126,9 +130,9 @@ impl Mesh {
             return None;
         }
         work.triangles += 1;
-        let triangle = self.triangle(face);
-        let free = ball.held_off(&triangle, free_until(face));
-        match contact_from(ball, &ball.asked(&triangle), free, to, &mut work.rounds) {
+        let free = ball.held_off(&self.triangle(face), free_until(face));
+        let asked = Asked::new(self.triangle_from(face, &ball.path.start()));
+        match contact_from(ball, &asked, free, to, &mut work.rounds) {
             Contact::At { f, .. } => Some(FirstContact { f: f.min(to), face }),
             Contact::Miss => None,
         }
@@ -139,6 +143,10 @@ impl Mesh {
 struct Search<'a, F> {
     mesh: &'a Mesh,
     ball: &'a MovingBall<'a>,
+    /// The start of the path.
+    start: Point3<f64>,
+    /// How far the mesh reaches from there.
+    size: f64,
     free_until: F,
     /// The first contact of the faces asked so far.
     best: Option<FirstContact>,
@@ -149,10 +157,12 @@ struct Search<'a, F> {
     limit: f64,
     /// How near a face has to be ruled out.
     reach: f64,
-    stretch: Option<Stretch>,
+    stretch: Stretch,
     left: Left,
+    /// Faces that are behind what the ball holds to, all through the piece.
+    hidden: SmallVec<[u32; 8]>,
     /// Faces that the ball does not seem to hit inside: asked when the one is known that it does hit.
-    later: SmallVec<[u32; 8]>,
+    later: SmallVec<[(u32, f64); 8]>,
     work: Work,
 }
 
@@ -161,7 +171,7 @@ impl<F: Fn(u32) -> f64> Search<'_, F> {
     fn begin(&mut self, from: f64, end: f64, within: f64, doubt: f64) {
         (self.from, self.end, self.limit) = (from, end, end);
         self.reach = self.ball.radius + within + doubt;
-        self.stretch = Some(Stretch::new(self.ball.path, from, end, self.reach));
+        self.stretch = Stretch::new(self.ball.path, from, end, self.reach);
         self.left.nothing(from, end, within);
     }
 
@@ -177,30 +187,52 @@ impl<F: Fn(u32) -> f64> Search<'_, F> {
             return;
         }
         self.work.triangles += 1;
-        let Some(stretch) = &self.stretch else { return };
-        let triangle = self.mesh.triangle(face);
-        let local = stretch.local(&triangle);
-        if let Some(normal) = self.mesh.plain_normal(face) {
-            if stretch.is_free_of(&local, normal) {
-                return;
-            }
-            if self.best.is_none() && !stretch.leads_into(&local, normal, self.ball.radius) {
-                self.later.push(face);
-                return;
-            }
-        }
-        self.ask(face, &triangle);
-    }
-
-    /// Asks a face.
-    fn ask(&mut self, face: u32, triangle: &[Point3<f64>; 3]) {
-        // Asked from the start of the path, not of the piece: the answer does not depend on the pieces.
-        let free = self.ball.held_off(triangle, (self.free_until)(face));
-        if free > self.limit {
-            self.left.faces.push((face, f64::INFINITY));
+        let corners = self.mesh.triangle_from(face, &self.start);
+        let normal = self.mesh.plain_normal(face);
+        if self.stretch.is_off_face(&corners, normal) {
             return;
         }
-        let asked = self.ball.asked(triangle);
+        let free = self.free_until(face);
+        if free > self.limit {
+            return;
+        }
+        if self.stretch.is_off_edges(&corners, normal) {
+            return;
+        }
+        if self.best.is_none() && !self.stretch.leads_into(&corners, normal, self.ball.radius) {
+            self.later.push((face, free));
+            return;
+        }
+        self.ask(face, corners, free);
+    }
+
+    /// The f before which the ball is known not to touch `face`; notes a face of which that is all there is to know.
+    #[inline]
+    fn free_until(&mut self, face: u32) -> f64 {
+        if self.ball.holds.is_empty() {
+            return 0.0;
+        }
+        let known = (self.free_until)(face);
+        let free = self.ball.held_off(&self.mesh.triangle(face), known);
+        if known > self.limit {
+            self.left.faces.push((face, f64::INFINITY));
+        } else if free > self.limit {
+            self.hidden.push(face);
+        }
+        free
+    }
+
+    /// Whether the ball is well off what its holds hide, where the piece ends.
+    fn is_off_holds(&self) -> bool {
+        let end = self.start + self.ball.path.displacement(self.limit);
+        let off = |hold: &Hold| hold.normal.dot(&(end - hold.point)) > self.reach + hold.slack + hold_bound(2.0 * self.size);
+        self.ball.holds.iter().all(|hold| hold.until <= self.limit || off(hold))
+    }
+
+    /// Asks a face with these `corners`, of which the ball is `free` for so long.
+    fn ask(&mut self, face: u32, corners: [Vector3<f64>; 3], free: f64) {
+        // Asked from the start of the path, not of the piece: the answer does not depend on the pieces.
+        let asked = Asked::new(corners);
         if self.best.is_some() {
             self.work.rounds += 1;
             if self.ball.stays_off(&asked, free, self.limit, self.reach) {
@@ -215,22 +247,28 @@ impl<F: Fn(u32) -> f64> Search<'_, F> {
             self.best = Some(FirstContact { f: f.min(self.to), face });
             if f < self.limit {
                 self.limit = f;
-                self.stretch = Some(Stretch::new(self.ball.path, self.from, f, self.reach));
+                self.stretch = Stretch::new(self.ball.path, self.from, f, self.reach);
             }
         }
     }
 
     /// Asks what was put off, as far as it is still of interest.
     fn conclude(&mut self) {
-        for face in std::mem::take(&mut self.later) {
-            let Some(stretch) = &self.stretch else { return };
-            let triangle = self.mesh.triangle(face);
-            let is_free = |n| stretch.is_free_of(&stretch.local(&triangle), n);
-            if !(self.best.is_some() && self.mesh.plain_normal(face).is_some_and(is_free)) {
-                self.ask(face, &triangle);
+        for (face, free) in std::mem::take(&mut self.later) {
+            let corners = self.mesh.triangle_from(face, &self.start);
+            let normal = self.mesh.plain_normal(face);
+            let is_off = || self.stretch.is_off_face(&corners, normal) || self.stretch.is_off_edges(&corners, normal);
+            if free > self.limit {
+                self.left.faces.push((face, f64::INFINITY));
+            } else if self.best.is_none() || !is_off() {
+                self.ask(face, corners, free);
             }
         }
         self.left.to = self.limit;
+        let hidden = std::mem::take(&mut self.hidden);
+        if !(hidden.is_empty() || self.is_off_holds()) {
+            self.left.faces.extend(hidden.into_iter().map(|face| (face, f64::INFINITY)));
+        }
     }
 }
 

@@ -6,7 +6,7 @@ use crate::closest::Asked;
 use crate::mesh::Mesh;
 use crate::rounding::position_bound;
 use crate::screen::is_off_plane;
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 use smallvec::SmallVec;
 
 /// What one ball has seen of one mesh: it changes no answer, only what has to be looked at again.
@@ -109,11 +109,10 @@ impl Mesh {
         let around = Aabb::of_points(&[*centre]).inflate(distance + position_bound(centre.coords.amax() + distance));
         work.nodes += self.bvh().visit_box(&around, |face| {
             work.triangles += 1;
-            let local = self.triangle(face).map(|v| v - centre);
-            if self.plain_normal(face).is_some_and(|n| is_off_plane(&local, n, distance)) {
-                return;
-            }
-            if Asked::new(&local.map(Point3::from)).closest(&Point3::origin()).offset.norm() <= distance {
+            let corners = self.triangle_from(face, centre);
+            if !is_off_plane(&corners, self.plain_normal(face), distance)
+                && Asked::new(corners).closest(&Vector3::zeros()).offset.norm() <= distance
+            {
                 faces.push(face);
             }
         });

@@ -24,7 +24,7 @@ pub struct Touch {
 struct Touching<'a> {
     mesh: &'a Mesh,
     centre: &'a Point3<f64>,
-    ahead: Point3<f64>,
+    ahead: Vector3<f64>,
     radius: f64,
     tolerance: f64,
     doubt: f64,
@@ -116,7 +116,7 @@ impl Mesh {
 
 impl<'a> Touching<'a> {
     fn new(mesh: &'a Mesh, centre: &'a Point3<f64>, heading: &Vector3<f64>, radius: f64, tolerance: f64) -> Self {
-        let ahead = Point3::from(heading.try_normalize(0.0).unwrap_or_else(Vector3::zeros) * tolerance);
+        let ahead = heading.try_normalize(0.0).unwrap_or_else(Vector3::zeros) * tolerance;
         let doubt = screen_bound(mesh.farthest_from(centre).max(radius + tolerance));
         Self { mesh, centre, ahead, radius, tolerance, doubt, found: SmallVec::new() }
     }
@@ -124,12 +124,12 @@ impl<'a> Touching<'a> {
     /// Notes what of `face` is touched, if anything is.
     fn ask(&mut self, face: u32) {
         let (mesh, reach) = (self.mesh, self.radius + self.tolerance);
-        let local = mesh.triangle(face).map(|v| v - self.centre);
-        if mesh.plain_normal(face).is_some_and(|n| is_off_plane(&local, n, reach + self.doubt)) {
+        let corners = mesh.triangle_from(face, self.centre);
+        if is_off_plane(&corners, mesh.plain_normal(face), reach + self.doubt) {
             return;
         }
-        let asked = Asked::new(&local.map(Point3::from));
-        let closest = asked.closest(&Point3::origin());
+        let asked = Asked::new(corners);
+        let closest = asked.closest(&Vector3::zeros());
         if closest.offset.norm() > reach {
             return;
         }
