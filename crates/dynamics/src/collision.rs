@@ -14,7 +14,6 @@ use carom_geometry::rounding::contact_doubt;
 use carom_geometry::site::{Bend, RegionBound, Site};
 use carom_geometry::sweep::{Surroundings, Work};
 use nalgebra::{Point3, Vector3};
-use smallvec::SmallVec;
 
 /// The earliest collision of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,16 +48,16 @@ fn leaving(step: &Step, contact: &Contact) -> Clearance {
     let mut c = [0.0; 5];
     // What the ball moves along, it leaves or enters by more than rounding or not at all.
     let along = contact.rate == 0.0;
-    let part = |v: &Vector3<f64>, of: f64| {
+    let part = |v: &Vector3<f64>, of: &Vector3<f64>| {
         let part = contact.normal.dot(v);
-        if along && part.abs() <= rate_rounding(of) { 0.0 } else { part }
+        if along && part.abs() <= rate_rounding(of.norm()) { 0.0 } else { part }
     };
     for (k, term) in step.path.terms().iter().enumerate() {
-        c[k + 1] = part(term, term.norm());
+        c[k + 1] = part(term, term);
     }
     if let Some(first) = step.path.terms().first() {
         let kick = first - step.velocity[0] * step.seconds;
-        c[1] = contact.rate * step.seconds + part(&kick, first.norm());
+        c[1] = contact.rate * step.seconds + part(&kick, first);
     }
     Clearance::new(c)
 }
@@ -86,12 +85,29 @@ fn leaves_until(step: &Step, bend: Bend, radius: f64, slope: f64) -> f64 {
     if further == 0.0 { until } else { until.min((gain / (8.0 * radius * further)).max(0.0)) }
 }
 
+/// A plane as seen from the side on which a ball is.
+#[derive(Debug, Clone, Copy)]
+struct FacingPlane {
+    surface: usize,
+    /// The unit normal towards the ball.
+    normal: Vector3<f64>,
+    point: Point3<f64>,
+}
+
+impl FacingPlane {
+    /// [`Plane::clearance`](carom_geometry::plane::Plane::clearance) from that side, bit for bit.
+    #[inline]
+    fn clearance(&self, x: &Point3<f64>, radius: f64) -> f64 {
+        self.normal.dot(&(x - self.point)) - radius
+    }
+}
+
 /// One ball among the surfaces of a plan.
 #[derive(Debug, Clone)]
 pub struct Obstacles<'a> {
     plan: &'a Plan,
-    /// On which side of each plane the ball is: decided once, and never again.
-    sides: Vec<Side>,
+    /// The planes from the side on which the ball is: decided once, and never again.
+    planes: Vec<FacingPlane>,
     /// What the ball has seen of each mesh.
     around: Vec<Surroundings>,
     radius: f64,
@@ -112,11 +128,15 @@ impl<'a> Obstacles<'a> {
                 if heading < 0.0 { Side::Negative } else { Side::Positive }
             })
         };
-        let sides = plan.planes.iter().map(|(_, plane)| side(plane)).collect();
+        let facing = |(surface, plane): &(usize, carom_geometry::plane::Plane)| {
+            let normal = plane.normal().into_inner() * side(plane).sign();
+            FacingPlane { surface: *surface, normal, point: plane.point() }
+        };
+        let planes = plan.planes.iter().map(facing).collect();
         let mesh_radius = radius.max(plan.point_radius);
         let extent = plan.farthest + state.position.coords.amax() + mesh_radius;
         let around = vec![Surroundings::new(extent); plan.meshes.len()];
-        Self { plan, sides, around, radius, mesh_radius }
+        Self { plan, planes, around, radius, mesh_radius }
     }
 
     /// The radius with which the ball meets the surface.
@@ -162,7 +182,7 @@ impl<'a> Obstacles<'a> {
     fn anchor(&self, contact: &Contact) -> Point3<f64> {
         match (contact.site, self.mesh(contact.surface)) {
             (Some(site), Some(mesh)) => mesh.anchor(site),
-            _ => self.plan.planes.iter().find(|(s, _)| *s == contact.surface).map_or(Point3::origin(), |p| p.1.point()),
+            _ => self.planes.iter().find(|p| p.surface == contact.surface).map_or(Point3::origin(), |p| p.point),
         }
     }
 
@@ -215,21 +235,21 @@ impl<'a> Obstacles<'a> {
             than.is_none_or(|hit| f < hit.f || (f == hit.f && rank(surface) < rank(hit.surface)))
         };
         let mut earliest: Option<Hit> = None;
-        for ((surface, plane), side) in self.plan.planes.iter().zip(&self.sides) {
-            let known = contacts.iter().position(|c| c.surface == *surface);
+        for facing in &self.planes {
+            let surface = facing.surface;
+            let known = contacts.iter().position(|c| c.surface == surface);
             let entry = match known {
                 Some(i) => returns[i].entry,
                 None => {
                     counters.clearances += 1;
-                    let gap = plane.clearance(&step.path.start(), self.radius, *side);
-                    let normal = plane.normal().into_inner() * side.sign();
-                    step.path.clearance(gap, &normal).first_entry(0.0, step.to)
+                    let gap = facing.clearance(&step.path.start(), self.radius);
+                    step.path.clearance(gap, &facing.normal).first_entry(0.0, step.to)
                 }
             };
             if let Entry::At { f, rate } = entry
-                && earlier(f, *surface, &earliest)
+                && earlier(f, surface, &earliest)
             {
-                earliest = Some(Hit { f, surface: *surface, face: None, rate: Some(rate) });
+                earliest = Some(Hit { f, surface, face: None, rate: Some(rate) });
             }
         }
         for ((surface, mesh), around) in self.plan.meshes.iter().zip(&mut self.around) {
@@ -280,10 +300,10 @@ impl<'a> Obstacles<'a> {
             rate: normal.dot(velocity),
             lasting: false,
         };
-        let mut all: SmallVec<[Contact; MAX_CONTACTS]> = SmallVec::new();
-        for ((surface, plane), side) in self.plan.planes.iter().zip(&self.sides) {
-            if plane.clearance(position, self.radius, *side) <= tolerance {
-                all.push(contact(*surface, None, plane.normal().into_inner() * side.sign()));
+        let mut all = Contacts::new();
+        for facing in &self.planes {
+            if facing.clearance(position, self.radius) <= tolerance {
+                all.push(contact(facing.surface, None, facing.normal));
             }
         }
         for ((surface, mesh), around) in self.plan.meshes.iter().zip(&self.around) {
@@ -296,6 +316,9 @@ impl<'a> Obstacles<'a> {
                 all.push(contact(*surface, Some(touch.site), touch.normal));
             }
             counters.add(&work);
+        }
+        if all.len() == 1 {
+            return all;
         }
         let rank = |c: &Contact| (self.plan.surfaces[c.surface].rank, c.site);
         all.sort_by(|a, b| a.rate.total_cmp(&b.rate).then_with(|| rank(a).cmp(&rank(b))));
@@ -324,8 +347,8 @@ impl<'a> Obstacles<'a> {
                 Some((position - foot).norm() - self.mesh_radius)
             }
             None => {
-                let i = self.plan.planes.iter().position(|(surface, _)| *surface == contact.surface)?;
-                Some(self.plan.planes[i].1.clearance(position, self.radius, self.sides[i]))
+                let facing = self.planes.iter().find(|p| p.surface == contact.surface)?;
+                Some(facing.clearance(position, self.radius))
             }
         }
     }

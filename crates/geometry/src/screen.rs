@@ -43,10 +43,8 @@ impl Stretch {
         let (from, to) = (normal.dot(&self.from), normal.dot(&self.to));
         let bend = normal.dot(&self.bend);
         // From its front and from its back.
-        let (highest, lowest) = (
-            largest(largest(heights[0], heights[1]), heights[2]),
-            least(least(heights[0], heights[1]), heights[2]),
-        );
+        let (highest, lowest) =
+            (largest(largest(heights[0], heights[1]), heights[2]), least(least(heights[0], heights[1]), heights[2]));
         let above = least(from, to) - highest - largest(bend, 0.0);
         let below = lowest - largest(from, to) + least(bend, 0.0);
         largest(above, below) - self.further > self.reach

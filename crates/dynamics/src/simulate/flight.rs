@@ -23,8 +23,8 @@ impl<O: Observer> Walk<'_, O> {
         for _ in 0..self.halvings {
             timestep *= 0.5;
         }
-        let rounding = rate_rounding(self.state.velocity.norm());
-        let tangential = self.contacts.iter().any(|c| c.rate <= rounding);
+        let rounding = || rate_rounding(self.state.velocity.norm());
+        let tangential = self.integrator.timestep().is_some() && self.contacts.iter().any(|c| c.rate <= rounding());
         let step = self.integrator.step(&self.forces, &self.state, timestep, tangential, &mut self.counters);
         if self.is_unstable(&step) || self.diverges(&step) {
             return;

@@ -36,11 +36,16 @@ impl<O: Observer> Walk<'_, O> {
     pub(super) fn settle(&mut self, left: Option<Contact>) -> bool {
         let sliding = self.motion == Motion::Sliding;
         let a = self.forces.acceleration(&self.state, &mut self.counters);
+        self.count_low_hops(&a);
+        if self.bounces_on(&a) {
+            self.counters.rest += self.contacts.len() as u64;
+            self.set_flying(left);
+            return false;
+        }
         let carriers = self.carriers();
         let before = self.state.velocity;
         let mut carrying = [false; MAX_CONTACTS];
         let mut settling = None;
-        self.count_low_hops(&a);
         while let Some((i, hop)) = self.next_held(&a, &carriers, &carrying) {
             carrying[i] = true;
             let contact = &carriers[i].contact;
@@ -109,6 +114,16 @@ impl<O: Observer> Walk<'_, O> {
             }
         }
         next
+    }
+
+    /// Whether every contact is left so fast, and has been for so short a time, that bouncing goes on however it is pressed: what presses it is
+    /// not more than all of the acceleration `a`.
+    fn bounces_on(&self, a: &Vector3<f64>) -> bool {
+        let slow = self.plan.rest.at(2.0 * a.norm()).speed;
+        self.standstill < PATIENCE_WITH_HOPS
+            && self.low_hops <= PATIENCE_WITH_LOW_HOPS
+            && self.integrator.timestep().is_none()
+            && self.contacts.iter().all(|c| c.rate > slow)
     }
 
     /// Counts the impacts in a row after which no hop is high.

@@ -225,7 +225,8 @@ impl<F: Fn(u32) -> f64> Search<'_, F> {
     /// Whether the ball is well off what its holds hide, where the piece ends.
     fn is_off_holds(&self) -> bool {
         let end = self.start + self.ball.path.displacement(self.limit);
-        let off = |hold: &Hold| hold.normal.dot(&(end - hold.point)) > self.reach + hold.slack + hold_bound(2.0 * self.size);
+        let off =
+            |hold: &Hold| hold.normal.dot(&(end - hold.point)) > self.reach + hold.slack + hold_bound(2.0 * self.size);
         self.ball.holds.iter().all(|hold| hold.until <= self.limit || off(hold))
     }
 
