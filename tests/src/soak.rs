@@ -30,7 +30,8 @@ pub fn soak(places: &Places, family: &Family, bounces: u64, most: u64) -> Report
     report
 }
 
-fn one(places: &Places, family: &Family, seed: u64) -> Report {
+/// Runs the ball that a seed makes of a family.
+pub fn one(places: &Places, family: &Family, seed: u64) -> Report {
     let unit = (family.unit)(places, seed);
     let plan = unit.stage.plan();
     let ball = &plan.balls()[0];

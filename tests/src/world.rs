@@ -84,7 +84,15 @@ impl World {
 
 /// The nearest point of the triangle as seen from `x`: its three sides and, above its inside, its plane.
 pub fn to_triangle(triangle: &[Point3<f64>; 3], x: &Point3<f64>) -> Vector3<f64> {
-    let [a, b, c] = triangle.map(|p| p - x);
+    let corners = triangle.map(|p| p - x);
+    // In a unit of about its size, by a power of two: products of four lengths vanish in a small scene.
+    let size = corners.iter().map(|p| p.amax()).fold(f64::MIN_POSITIVE, f64::max);
+    let unit = f64::from_bits(size.to_bits() & !((1 << 52) - 1));
+    to_unit_triangle(corners.map(|p| p / unit)) * unit
+}
+
+/// The nearest point of the triangle with these corners as seen from the origin.
+fn to_unit_triangle([a, b, c]: [Vector3<f64>; 3]) -> Vector3<f64> {
     let mut best = to_segment(&a, &b);
     for other in [to_segment(&b, &c), to_segment(&c, &a)] {
         if other.norm_squared() < best.norm_squared() {

@@ -251,3 +251,36 @@ fn r28_a_ball_that_turns_round_in_a_corner_does_not_sink_into_the_wall() {
         }
     }
 }
+
+#[test]
+fn r28_friction_in_a_groove_stops_what_slides_up_it_and_drives_nothing() {
+    // Slower than the two walls together would call standing (sqrt(2 (4 + 4) / 2) m/s), faster than each: it slides on until it stands.
+    let up = |friction: Friction, pull: f64, walled: bool| {
+        let m = rough(0.5, friction);
+        let stage = Stage::new(4.0).gravity([-pull, -4.0, -4.0]).rest_length(0.5).floor(m).plane(
+            "side",
+            m,
+            [0.0; 3],
+            [0.0, 1.0, 0.0],
+        );
+        let stage = if walled { stage.plane("end", m, [0.0; 3], [1.0, 0.0, 0.0]) } else { stage };
+        stage.ball([0.0; 3], [2.5, 0.0, 0.0], 0.0).run()
+    };
+    for friction in [coulomb(0.5), Friction::impulse(0.5).unwrap()] {
+        for walled in [false, true] {
+            // mu (N1 + N2) = 4 m/s^2 against a pull of 1: at -5 m/s^2 it stands after 0.5 s and 0.625 m, and is held.
+            let run = up(friction, 1.0, walled);
+            let rest = run.events(EventKind::Rest)[0];
+            assert_eq!((rest.time, rest.position), (0.5, Point3::new(0.625, 0.0, 0.0)), "walled: {walled}");
+            assert_eq!(run.outcome.state.position, rest.position);
+        }
+    }
+    for friction in [coulomb(0.125), Friction::impulse(0.125).unwrap()] {
+        // 1 m/s^2 against a pull of 3: up at -4 m/s^2 for 0.625 s, and down again at -2.
+        let run = up(friction, 3.0, false);
+        assert_eq!(run.at(0.625), Point3::new(0.78125, 0.0, 0.0));
+        assert_eq!(run.at(1.625), Point3::new(-0.21875, 0.0, 0.0));
+    }
+    // What lets nothing slide stops it where it is.
+    assert_eq!(up(Friction::linear(0.5).unwrap(), 1.0, false).outcome.state.position, Point3::origin());
+}

@@ -2,7 +2,7 @@
 
 use carom_tests::closed::{Closed, Treatment};
 use carom_tests::shots::{SHOTS, shoot};
-use carom_tests::soak::{FAMILIES, Places, soak};
+use carom_tests::soak::{FAMILIES, Places, one, soak};
 
 #[test]
 fn r28_no_ball_of_the_soak_escapes_gains_or_stalls() {
@@ -12,6 +12,17 @@ fn r28_no_ball_of_the_soak_escapes_gains_or_stalls() {
         println!("{}: {report:?}", family.name);
         assert!(report.is_sound(), "{}: {report:?}", family.name);
         assert!(report.balls == 3 && report.impacts > 10, "{}: {report:?}", family.name);
+    }
+}
+
+#[test]
+fn r28_what_the_soak_once_found_stays_found() {
+    let places = Places::default();
+    // Stood still in a groove, and was driven uphill by the friction that should have held it.
+    for (name, seed) in [("lossy-box", 36112), ("lossy-box", 12353), ("lossy-box", 55433)] {
+        let family = FAMILIES.iter().find(|family| family.name == name).unwrap_or_else(|| panic!("no family {name}"));
+        let report = one(&places, family, seed);
+        assert!(report.is_sound() && report.impacts > 10, "{name} {seed}: {report:?}");
     }
 }
 

@@ -36,15 +36,13 @@ impl Ball {
         radius: f64,
         mass: Option<f64>,
     ) -> Result<Self, ValueError> {
-        require_finite("position", &position.coords)?;
-        require_finite("velocity", &velocity)?;
         require("radius", radius, "finite and >= 0, in m", radius.is_finite() && radius >= 0.0)?;
         if let Some(mass) = mass {
             require("mass", mass, "finite and > 0, in kg", mass.is_finite() && mass > 0.0)?;
         }
         let (spin, inertia) = (Vector3::zeros(), SOLID_SPHERE);
-        let start = State { position, velocity };
-        Ok(Self { start, radius, mass, spin, inertia, drag: None, restitution: None })
+        let start = State { position: Point3::origin(), velocity: Vector3::zeros() };
+        Self { start, radius, mass, spin, inertia, drag: None, restitution: None }.starting(position, velocity)
     }
 
     /// The same with the angular velocity `spin` in rad/s, right-handed.
@@ -70,6 +68,13 @@ impl Ball {
     pub fn with_restitution(self, c_r: f64) -> Result<Self, ValueError> {
         require("restitution", c_r, "between 0 and 1", (0.0..=1.0).contains(&c_r))?;
         Ok(Self { restitution: Some(c_r), ..self })
+    }
+
+    /// The same with another start: its centre at `position` (m), with `velocity` (m/s).
+    pub fn starting(self, position: Point3<f64>, velocity: Vector3<f64>) -> Result<Self, ValueError> {
+        require_finite("position", &position.coords)?;
+        require_finite("velocity", &velocity)?;
+        Ok(Self { start: State { position, velocity }, ..self })
     }
 
     /// Where the ball starts, and how fast.

@@ -93,9 +93,14 @@ impl Balance {
         Some((friction * v.norm() + self.free.dot(v)) / ((friction - free) * (friction + free)))
     }
 
-    /// The acceleration of a ball that moves, or begins to, along the unit vector `direction`.
-    fn sliding(&self, direction: &Vector3<f64>) -> Vector3<f64> {
-        self.free - direction * self.friction
+    /// The acceleration of a ball that moves with velocity `v` (m/s): friction is against the motion. From a standstill it is against where the ball
+    /// would set out to, and no more than what pulls it there: what is held stays.
+    fn acceleration(&self, v: &Vector3<f64>) -> Vector3<f64> {
+        match (v.try_normalize(0.0), self.free.try_normalize(0.0)) {
+            (Some(direction), _) => self.free - direction * self.friction,
+            (None, Some(direction)) => direction * (self.free.norm() - self.friction).max(0.0),
+            (None, None) => Vector3::zeros(),
+        }
     }
 }
 
@@ -140,11 +145,9 @@ pub fn slide(
     let straight = balance.friction == 0.0 || speed == 0.0 || parallel(&balance.free, &state.velocity);
     // Along a groove every motion is straight.
     if forces.are_constant() && flat && (straight || balance.loads.count() > 1) {
-        let heading = if speed > 0.0 { state.velocity } else { balance.free };
-        let direction = heading.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
-        let a = balance.sliding(&direction);
-        let braking = -a.dot(&direction);
-        if speed > 0.0 && balance.friction > 0.0 && braking > 0.0 && speed / braking <= remaining {
+        let a = balance.acceleration(&state.velocity);
+        let braking = state.velocity.try_normalize(0.0).map_or(0.0, |direction| -a.dot(&direction));
+        if balance.friction > 0.0 && braking > 0.0 && speed / braking <= remaining {
             let mut step = exact::step(state, a, remaining);
             step.to = (speed / braking) / step.seconds;
             return Slide { step, stops: true };
@@ -154,12 +157,8 @@ pub fn slide(
     let longest = carriers.iter().map(|c| longest_step(c, state, &balance.free)).fold(remaining, f64::min);
     let step = integrator.step(state, longest, |s, after| {
         let a = forces.acceleration_after(s, after, counters);
-        let balance = Balance::of(&a, carriers, s);
-        // From a standstill, friction is against where the ball sets out to.
-        let direction = s.velocity.try_normalize(0.0).or_else(|| balance.free.try_normalize(0.0));
-        let direction = direction.unwrap_or_else(Vector3::zeros);
-        // What the carriers make of the motion itself: towards the centre of the curve.
-        balance.sliding(&direction)
+        // With what the carriers make of the motion itself: towards the centre of the curve.
+        Balance::of(&a, carriers, s).acceleration(&s.velocity)
     });
     Slide { step, stops: false }
 }

@@ -41,10 +41,10 @@ fn the_counts_are_the_same_twice_and_the_files_are_there() {
     assert_eq!(folder.read("a.csv"), folder.read("b.csv"));
     assert_eq!(folder.read("a.svg"), folder.read("b.svg"));
     let (csv, svg) = (folder.read("a.csv"), folder.read("a.svg"));
-    // 6 methods with 5 steps and the adaptive one with 11 tolerances.
-    assert_eq!(csv.lines().count(), 1 + 6 * 5 + 11);
+    // 7 methods with 5 steps and the adaptive one with 11 tolerances.
+    assert_eq!(csv.lines().count(), 1 + 7 * 5 + 11);
     assert!(svg.contains("<desc>") && svg.contains("prefers-color-scheme: dark"));
-    for method in ["slides", "euler", "semi-implicit-euler", "rk4", "adaptive"] {
+    for method in ["slides", "euler", "semi-implicit-euler", "rk4", "dormand-prince", "adaptive"] {
         assert!(csv.lines().any(|line| line.starts_with(method)) && svg.contains(method), "{method}");
     }
 }

@@ -56,9 +56,7 @@ impl Candidate {
 /// The ball with its start moved by `shift` (m); as it is, if that leaves the numbers.
 pub(super) fn shifted(ball: &Ball, shift: &Vector3<f64>) -> Ball {
     let start = ball.start();
-    let moved = Ball::new(start.position + shift, start.velocity, ball.radius(), ball.mass());
-    let moved = moved.and_then(|moved| moved.spinning(ball.spin())?.with_inertia(ball.inertia()));
-    moved.unwrap_or(*ball)
+    ball.starting(start.position + shift, start.velocity).unwrap_or(*ball)
 }
 
 /// When to look, and the coarsest step, in s, a power of two: the first flight has a few of them, and ends one of them where all finer ones end

@@ -40,6 +40,8 @@ pub struct Shares {
     pub determination: f64,
     /// Of rounding: what becomes of the last digit of the start.
     pub rounding: f64,
+    /// The same in the first flight.
+    pub flight_rounding: f64,
 }
 
 /// When positions are compared, in s.
@@ -49,6 +51,13 @@ pub struct Times {
     pub all: Vec<f64>,
     /// The one that stands for the first flight.
     pub flight: f64,
+}
+
+impl Times {
+    /// Those up to the one that stands for the first flight.
+    pub fn in_flight(&self) -> &[f64] {
+        &self.all[..self.all.partition_point(|t| *t <= self.flight)]
+    }
 }
 
 /// A reference with the time up to which it can be compared with.
@@ -236,6 +245,18 @@ impl Ends {
 pub fn growth(a: &Course, b: &Course, shift: f64) -> Vec<f64> {
     let pairs = a.samples.iter().zip(&b.samples);
     pairs.map(|([x, _], [y, _])| norm(&sub(x, y)).to_f64() / shift).collect()
+}
+
+/// The greatest distance in m between courses at the sample times that can be compared.
+pub fn apart(times: &[f64], references: &[Compared], others: &[Course]) -> f64 {
+    let mut greatest = 0.0_f64;
+    for (reference, other) in references.iter().zip(others) {
+        let pairs = times.iter().zip(&reference.course.samples).zip(&other.samples);
+        for ((_, [x, _]), [y, _]) in pairs.take_while(|((t, _), _)| **t <= reference.until) {
+            greatest = greatest.max(norm(&sub(x, y)).to_f64());
+        }
+    }
+    greatest
 }
 
 /// What rounding makes of a course of the reference in a scene of `size` (m) after a growth of small differences, in m: a few hundred operations

@@ -1,8 +1,8 @@
 //! What the measurements of a scene come to: orders, remarks, the discretisation of its surfaces, where the balls end.
 
 use super::candidate::Candidate;
-use super::compare::{Compared, Ends, Errors, Times, distance, only_gravity};
-use super::fit::order;
+use super::compare::{Compared, Ends, Times, distance, only_gravity};
+use super::fit::{Law, Order, order};
 use super::measure::Effort;
 use super::real::rounded;
 use super::record::Record;
@@ -28,16 +28,24 @@ impl Stage<'_> {
                 continue;
             }
             let stepping = variant.parameter() == Parameter::Step;
-            // What a linear f is off by depends on where in a step the impacts lie: no line, but a band.
-            let even = stepping && variant != Variant::Rk4LinearF;
-            let fit = |error: fn(&Errors) -> f64, step: fn(&Measurement) -> f64| {
-                let step = |m: &Measurement| if stepping { m.value } else { step(m) };
-                let points: Vec<_> =
-                    measurements.iter().map(|m| (step(m), error(&m.errors), m.shares.rounding)).collect();
-                order(if fits { &points } else { &[] }, even)
+            let flights = if stepping { Law::Smooth } else { Law::Band };
+            let bounces = match variant {
+                // What f is off by depends on where in a step the impacts lie: nothing else is left of a linear f, and as much of a quartic as of the flight.
+                Variant::Rk4LinearF | Variant::DormandPrince => Law::Band,
+                _ if stepping => Law::Even,
+                _ => Law::Band,
             };
-            let flight_order = fit(|e| e.flight, |m| m.flight_step);
-            let order = fit(|e| e.position, |m| m.step);
+            let fit = |error: fn(&Measurement) -> [f64; 2], step: fn(&Measurement) -> f64, law: Law| {
+                let step = |m: &Measurement| if stepping { m.value } else { step(m) };
+                let point = |m: &Measurement| {
+                    let [error, rounding] = error(m);
+                    (step(m), error, rounding)
+                };
+                let points: Vec<_> = measurements.iter().map(point).collect();
+                order(if fits { &points } else { &[] }, law)
+            };
+            let flight_order = fit(|m| [m.errors.flight, m.shares.flight_rounding], |m| m.flight_step, flights);
+            let order = fit(|m| [m.errors.position, m.shares.rounding], |m| m.step, bounces);
             sweeps.push(Sweep { variant, measurements, flight_order, order });
         }
         sweeps
@@ -52,15 +60,25 @@ impl Stage<'_> {
         }
         for sweep in sweeps {
             let variant = sweep.variant;
-            let whole = sweep.order.value();
             let higher = variant.textbook_orders().is_some_and(|[flight, _]| flight > 1);
             if higher && only_gravity(self.scene) && comparable > 0 && impacts > 0 {
                 self.remarks.push(Remark::ExactFlights(variant));
             }
-            if let (Some(flight), Some(order)) = (sweep.flight_order.value(), whole)
-                && order < flight - 0.1
+            let flight = sweep.flight_order;
+            let expected = match (flight, variant.textbook_orders()) {
+                (Order::AtRounding, Some([flight, _])) => Some(f64::from(flight)),
+                _ => flight.value(),
+            };
+            if let (Some(expected), Some(order)) = (expected, sweep.order.value())
+                && order < expected - 0.1
             {
                 self.remarks.push(Remark::LoweredByBounces { variant, flight, order });
+            }
+            if let (Some(order), Some([textbook, _])) = (sweep.flight_order.value(), variant.textbook_orders())
+                && variant.parameter() == Parameter::Tolerance
+                && (order - f64::from(textbook)).abs() > 0.1
+            {
+                self.remarks.push(Remark::OwnSteps { variant, order });
             }
             // By more than half the ball; of points, by more than a thousandth of the scene.
             let largest = self.scene.balls.iter().map(Ball::radius).fold(0.0, f64::max);

@@ -4,12 +4,13 @@
 //! the formulas of the chapter. What it does not do (slide where that has no closed form, answer several surfaces at
 //! once) ends the course, and the comparison with it.
 
-use super::real::{Real, Vector, add, dot, norm, point, rounded, scale, sub, vector};
+use super::real::{Real, Vector, add, cross, dot, norm, point, rounded, scale, sub, vector};
 use super::settle::{Settled, settle};
 use super::taylor::{Field, Flight};
 use super::world::{Meeting, Obstacle, World};
 use crate::body::Ball;
 use crate::effects::friction::Friction;
+use crate::effects::grip::Grip;
 use crate::plan::Plan;
 use crate::surface::Material;
 use nalgebra::Vector3;
@@ -34,7 +35,7 @@ pub struct Impact {
 pub enum Reach {
     /// To the end of the scene.
     Complete,
-    /// Until the ball slides in a way that has no closed form here.
+    /// Until the ball slides or rolls in a way that has no closed form here.
     Sliding,
     /// Until the ball touches several surfaces at once.
     Simultaneous,
@@ -248,8 +249,12 @@ impl Walker<'_> {
         let material = self.material(*surface);
         self.course.impacts.push(Impact { time: self.t.clone(), surface: *surface });
         let speed = -rate;
-        let v_t = slow(&material.friction, &sub(&self.v, &scale(n, rate)), &speed, &restitution(&material, &speed));
         let c_r = restitution(&material, &speed);
+        let v_t = sub(&self.v, &scale(n, rate));
+        let v_t = match &material.friction {
+            Friction::Grip(grip) => self.turn(grip, n, &v_t, &(&speed * &(&Real::from(1.0) + &c_r))),
+            friction => slow(friction, &v_t, &speed, &c_r),
+        };
         let rebound = &speed * &c_r;
         self.v = add(&v_t, &scale(n, &rebound));
         if touched.iter().any(|(_, other, _)| dot(other, &self.v) < -(&self.touch)) {
@@ -266,11 +271,30 @@ impl Walker<'_> {
         ends.then(|| self.last())
     }
 
+    /// v_t after a surface of unit normal `n` that grips has taken the normal momentum `impulse` (m/s) per mass; it turns the ball. The point of
+    /// contact moves with u = v_t - r omega x n, and friction takes what turns it into -e_x u, or mu times the impulse if that is less.
+    fn turn(&mut self, grip: &Grip, n: &Vector, v_t: &Vector, impulse: &Real) -> Vector {
+        let spin = self.field.spin(&self.t);
+        let u = sub(v_t, &scale(&cross(&spin, n), &self.radius));
+        let (one, alpha) = (Real::from(1.0), Real::from(self.ball.inertia()));
+        let grips = &(&alpha * &(&one + &Real::from(grip.tangential()))) / &(&one + &alpha);
+        let (speed, most) = (norm(&u), &Real::from(grip.friction()) * impulse);
+        let share = if &speed * &grips <= most { grips } else { &most / &speed };
+        let kick = scale(&u, &-&share);
+        let lever = &alpha * &self.radius;
+        let turned = sub(&spin, &scale(&cross(n, &kick), &(&one / &lever)));
+        self.field = self.field.clone().spun(&turned, &self.t);
+        add(v_t, &kick)
+    }
+
     /// Lasting contact to the end of the scene, as far as it has a closed form.
     fn last(&mut self) -> Reach {
         let touched = self.touched();
         let [(surface, n, rate)] = touched.as_slice() else { return Reach::Simultaneous };
         let material = self.material(*surface);
+        if matches!(material.friction, Friction::Grip(_)) {
+            return Reach::Sliding;
+        }
         let on_plane = self.planes.iter().any(|(s, _)| s == surface);
         let duration = Real::from(self.setting.plan.duration);
         let settled = settle(&self.field, n, rate, &material, &self.v, &self.t, &(&duration - &self.t), on_plane);
@@ -310,7 +334,7 @@ pub fn slow(friction: &Friction, v_t: &Vector, closing: &Real, c_r: &Real) -> Ve
         scale(v_t, &(&(&speed - amount) / &speed))
     };
     match friction {
-        // What grips has no reference of this kind: see Field::of.
+        // What grips turns the ball as well.
         Friction::None | Friction::Grip(_) => v_t.clone(),
         Friction::Linear(c_f) => scale(v_t, &(Real::from(1.0) - Real::from(c_f.get()))),
         Friction::Coulomb(mu) => less(&(&Real::from(mu.get()) * closing)),

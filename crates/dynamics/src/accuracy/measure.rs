@@ -1,11 +1,11 @@
 //! The measurement: references, runs of every method over its sweep, their errors, and their times; and the choice that follows.
 
 use super::candidate::{time, times};
-use super::compare::{Compared, reference_error};
+use super::compare::Compared;
 use super::course::{Course, Reach};
 use super::record::Record;
 use super::report::{Measurement, Remark, Report};
-use super::stage::Stage;
+use super::stage::{References, Stage};
 use super::variant::Variant;
 use super::world::World;
 use crate::error::SceneError;
@@ -48,7 +48,7 @@ pub fn measure(scene: &Scene, effort: &Effort, clock: &mut dyn FnMut() -> f64) -
     if all > scene.balls.len() {
         stage.remarks.push(Remark::SomeBalls { followed: scene.balls.len(), of: all });
     }
-    let (references, growth, reference) = stage.references()?;
+    let References { kind, courses: references, growth, error } = stage.references()?;
     let impacts = references.iter().map(|r| count(&r.course, r.until)).sum();
     let candidates = stage.candidates(effort, coarse)?;
     let mut measured: Vec<Measurement> = Vec::new();
@@ -65,8 +65,8 @@ pub fn measure(scene: &Scene, effort: &Effort, clock: &mut dyn FnMut() -> f64) -
     let until = references.iter().map(|r| r.until).fold(scene.duration, f64::min);
     let complete = references.iter().all(|r| r.course.reach == Reach::Complete);
     Ok(Report {
-        reference,
-        reference_error: reference_error(plan.farthest, growth),
+        reference: kind,
+        reference_error: error,
         balls: scene.balls.len(),
         until,
         growth,

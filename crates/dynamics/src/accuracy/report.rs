@@ -155,8 +155,15 @@ pub enum Remark {
         /// Of which method.
         variant: Variant,
         /// In flight.
-        flight: f64,
+        flight: Order,
         /// Over all.
+        order: f64,
+    },
+    /// The order of a method that chooses its steps, over their mean, is not quite that of its formula.
+    OwnSteps {
+        /// Of which method.
+        variant: Variant,
+        /// In flight.
         order: f64,
     },
     /// Runs in which a ball went through a surface or left the scene's impacts behind.
@@ -184,7 +191,7 @@ impl fmt::Display for Remark {
             Self::ReferenceEnds { ball, at, reach } => {
                 let why = match reach {
                     Reach::Complete => "at the end of the scene",
-                    Reach::Sliding => "the ball slides where that has no closed form",
+                    Reach::Sliding => "the ball slides or rolls where that has no closed form",
                     Reach::Simultaneous => "the ball touches several surfaces at once",
                     Reach::Undecided => "a touch cannot be told from a miss",
                     Reach::Budget => "the ball bounces more often than is followed",
@@ -209,16 +216,28 @@ impl fmt::Display for Remark {
                 "{}: a parabola has no error of integration, at any step; no order can be fitted to rounding",
                 variant.name()
             ),
-            Self::LoweredByBounces { variant, flight, order } => write!(
-                f,
-                "{}: order {flight:.2} in flight, {order:.2} with its bounces: {}",
-                variant.name(),
-                match variant {
+            Self::LoweredByBounces { variant, flight, order } => {
+                let flight = match flight {
+                    Order::Fitted(order) => format!("order {order:.2} in flight"),
+                    _ => "no error but rounding in flight".to_owned(),
+                };
+                let why = match variant {
                     Variant::Rk4LinearF => "f = d0 / (d0 - d1) is off by O(h^2) on a curved path, whatever the flight is worth",
                     Variant::Adaptive => "the step after a bounce begins anew, with the length that was right before it",
                     Variant::Slides | Variant::SlidesOwnF => "a rounded hit position may lie behind the plane, and edges are not met",
-                    _ => "the errors of several flights and impacts add up, and none of them is in its limit yet",
-                }
+                    Variant::Euler | Variant::SemiImplicitEuler => {
+                        "the errors of several flights and impacts add up, and none of them is in its limit yet"
+                    }
+                    _ => "hops that are too short for the step end at once, which is off by O(h^2)",
+                };
+                write!(f, "{}: {flight}, order {order:.2} with its bounces: {why}", variant.name())
+            }
+            Self::OwnSteps { variant, order } => write!(
+                f,
+                "{}: order {order:.2} in flight is over the mean of steps that it chooses, which jump by halves and doubles; \
+                 {} is the same formula with steps that are given",
+                variant.name(),
+                Variant::DormandPrince.name()
             ),
             Self::Through { variant, runs } => {
                 write!(f, "{}: in {runs} of its runs a ball passes through a surface", variant.name())

@@ -1,7 +1,7 @@
 //! A scene with what is needed to judge runs of it: the references, the runs, their errors, and what the numbers mean.
 
 use super::candidate::{Candidate, shifted};
-use super::compare::{Compared, Ends, Errors, EulerLaws, Shares, Times, distance, growth};
+use super::compare::{Compared, Ends, Errors, EulerLaws, Shares, Times, apart, distance, growth, reference_error};
 use super::course::{Course, Reach, Setting, follow};
 use super::measure::Effort;
 use super::real::vector;
@@ -24,6 +24,10 @@ use nalgebra::Vector3;
 /// Growth of small differences beyond which positions say nothing.
 const GROWTH_LIMIT: f64 = 1000.0;
 
+/// What a method that stands for a reference is held against to see how far it is off: itself with a tolerance this many times larger, which is
+/// not better.
+const COARSER: f64 = 16.0;
+
 /// A scene with what is needed to judge runs of it.
 pub(super) struct Stage<'a> {
     pub(super) scene: &'a Scene,
@@ -33,13 +37,24 @@ pub(super) struct Stage<'a> {
     pub(super) remarks: Vec<Remark>,
 }
 
+/// What the methods are compared with.
+pub(super) struct References {
+    pub(super) kind: ReferenceKind,
+    /// One for each ball.
+    pub(super) courses: Vec<Compared>,
+    /// The worst growth of small differences while they can be compared.
+    pub(super) growth: f64,
+    /// How far they are off themselves, in m.
+    pub(super) error: f64,
+}
+
 impl Stage<'_> {
-    /// The reference of each ball, and the worst growth of small differences while it can be compared; and what kind of reference it is.
-    pub(super) fn references(&mut self) -> Result<(Vec<Compared>, f64, ReferenceKind), SceneError> {
+    /// The reference of each ball.
+    pub(super) fn references(&mut self) -> Result<References, SceneError> {
         let fields: Result<Vec<Field>, _> = self.scene.balls.iter().map(|ball| Field::of(self.scene, ball)).collect();
         let size = self.plan.farthest.max(f64::MIN_POSITIVE);
         let direction = Vector3::new(0.5, 0.5, 0.5f64.sqrt());
-        let (pairs, shift, kind) = match fields {
+        let (pairs, shift, coarser, kind) = match fields {
             Ok(fields) => {
                 let setting = Setting { plan: self.plan, world: self.world, times: &self.times.all };
                 let shift = size * 2f64.powi(-70);
@@ -49,23 +64,25 @@ impl Stage<'_> {
                 };
                 let pairs: Vec<(Course, Course)> = self.scene.balls.iter().zip(&fields).map(pair).collect();
                 let closed = fields.iter().all(Field::is_constant) && !self.world.has_faces();
-                (pairs, shift, if closed { ReferenceKind::ClosedForm } else { ReferenceKind::Extended })
+                (pairs, shift, None, if closed { ReferenceKind::ClosedForm } else { ReferenceKind::Extended })
             }
             Err(effect) => {
                 let shift = size * 2f64.powi(-30);
-                let finest = |shift: f64| -> Result<Vec<Course>, SceneError> {
+                let fine = |shift: f64, tolerance: f64| -> Result<Vec<Course>, SceneError> {
                     let balls = self.scene.balls.iter().map(|ball| shifted(ball, &(direction * shift)));
-                    let method = Some(Method::Adaptive { tolerance: FINEST_TOLERANCE });
+                    let method = Some(Method::Adaptive { tolerance });
                     let scene = Scene { balls: balls.collect(), method, ..self.scene.clone() };
-                    let candidate = Candidate::new(Variant::Adaptive, FINEST_TOLERANCE, &scene)?;
+                    let candidate = Candidate::new(Variant::Adaptive, tolerance, &scene)?;
                     Ok(self.beside(&scene).run(&candidate).iter().map(|r| r.course(self.plan.duration)).collect())
                 };
+                let finest = |shift: f64| fine(shift, FINEST_TOLERANCE);
                 let pairs = finest(0.0)?.into_iter().zip(finest(shift)?).collect();
-                (pairs, shift, ReferenceKind::Itself(effect))
+                let coarser = fine(0.0, COARSER * FINEST_TOLERANCE)?;
+                (pairs, shift, Some(coarser), ReferenceKind::Itself(effect))
             }
         };
         let mut worst = 1.0_f64;
-        let mut references = Vec::new();
+        let mut courses = Vec::new();
         for (ball, (course, moved)) in pairs.into_iter().enumerate() {
             let growth = growth(&course, &moved, shift);
             let chaotic = growth.iter().position(|g| *g > GROWTH_LIMIT);
@@ -80,9 +97,13 @@ impl Stage<'_> {
             let until = chaotic.map_or(course.until, |k| k.checked_sub(1).map_or(0.0, |k| self.times.all[k]));
             let known = growth.iter().take(chaotic.unwrap_or(growth.len()));
             worst = known.fold(worst, |worst, g| worst.max(*g));
-            references.push(Compared { until: until.min(course.until), course });
+            courses.push(Compared { until: until.min(course.until), course });
         }
-        Ok((references, worst, kind))
+        let error = match coarser {
+            None => reference_error(size, worst),
+            Some(coarser) => apart(&self.times.all, &courses, &coarser),
+        };
+        Ok(References { kind, courses, growth: worst, error })
     }
 
     /// The same stage for a scene that differs in its balls.
@@ -144,7 +165,9 @@ impl Stage<'_> {
     ) -> Result<Measurement, SceneError> {
         let Candidate { variant, value, .. } = *candidate;
         let errors = Errors::of(self.scene, self.times, records, references);
-        let rounding = distance(&self.times.all, records, &self.run_beside(candidate), references);
+        let beside = self.run_beside(candidate);
+        let rounding = distance(&self.times.all, records, &beside, references);
+        let flight_rounding = distance(self.times.in_flight(), records, &beside, references);
         let twin = variant.twin();
         let (integration, determination) = if twin == variant {
             (errors.position, errors.off_touch)
@@ -173,7 +196,7 @@ impl Stage<'_> {
             step: effective_step(all),
             flight_step: effective_step(first),
             errors,
-            shares: Shares { integration, determination, rounding },
+            shares: Shares { integration, determination, rounding, flight_rounding },
             laws: laws.and_then(|record| EulerLaws::of(self.scene, record, value, errors.first_impact)),
             ends: Ends::of(self.scene, &states, impacts, resting),
             counters,

@@ -6,7 +6,6 @@ use super::real::{BITS, Real, Vector, add, cross, dot, norm, rounded, scale, sub
 use crate::body::Ball;
 use crate::effects::buoyancy::ADDED_MASS;
 use crate::effects::drag::Law;
-use crate::effects::friction::Friction;
 use crate::scene::Scene;
 use nalgebra::Vector3;
 
@@ -20,6 +19,7 @@ pub struct Field {
     constant: Vector,
     /// Resistance per mass, and the wind.
     resistance: Option<(Resistance, Vector)>,
+    spin: Spin,
     lift: Option<Lift>,
 }
 
@@ -32,14 +32,20 @@ enum Resistance {
     Quadratic(Real),
 }
 
-/// The Magnus force: a = omega x u times a factor, omega falling as e^(-t / tau).
+/// The spin omega, falling as e^(-t / tau).
 #[derive(Debug, Clone)]
-struct Lift {
-    /// At the start, times the factor.
-    spin: Vector,
-    wind: Vector,
+struct Spin {
+    /// What it would have been at t = 0.
+    start: Vector,
     /// 1 / tau.
     decay: Real,
+}
+
+/// The Magnus force: a = omega x u times a factor.
+#[derive(Debug, Clone)]
+struct Lift {
+    factor: Real,
+    wind: Vector,
 }
 
 /// A stretch of flight, as a series in the time from its start.
@@ -57,14 +63,18 @@ impl Field {
     /// What accelerates `ball` in `scene`; the name of an effect that has no series here, if there is one.
     pub fn of(scene: &Scene, ball: &Ball) -> Result<Self, &'static str> {
         // Taken apart, so that an effect that comes to a scene is not forgotten here.
-        let Scene { gravity, drag, magnus, spin_decay, buoyancy, duration: _, surfaces, balls: _, rest: _, method: _ } =
-            scene;
-        if surfaces.iter().any(|s| matches!(s.material.friction, Friction::Grip(_))) {
-            return Err("friction that grips");
-        }
-        if scene.grips() {
-            return Err("the grip of surfaces on spin");
-        }
+        let Scene {
+            gravity,
+            drag,
+            magnus,
+            spin_decay,
+            buoyancy,
+            duration: _,
+            surfaces: _,
+            balls: _,
+            rest: _,
+            method: _,
+        } = scene;
         let g = vector(&gravity.map_or(Vector3::zeros(), |g| g.acceleration()));
         let r = Real::from(ball.radius());
         let area = &Real::pi() * &(&r * &r);
@@ -93,13 +103,26 @@ impl Field {
                 Some((law, vector(&drag.wind())))
             }
         };
-        let lift = magnus.filter(|_| ball.spin() != Vector3::zeros()).map(|magnus| {
+        let turns = ball.spin() != Vector3::zeros() || scene.grips();
+        let lift = magnus.filter(|_| turns).map(|magnus| {
             let (k_rho, wind) = magnus.parts();
             let factor = &(&(&(&half * &Real::from(k_rho)) * &area) * &r) / &inertia;
-            let decay = spin_decay.map_or(Real::zero(), |d| Real::from(1.0) / Real::from(d.time_constant()));
-            Lift { spin: scale(&vector(&ball.spin()), &factor), wind: vector(&wind), decay }
+            Lift { factor, wind: vector(&wind) }
         });
-        Ok(Self { constant, resistance, lift })
+        let decay = spin_decay.map_or(Real::zero(), |d| Real::from(1.0) / Real::from(d.time_constant()));
+        let spin = Spin { start: vector(&ball.spin()), decay };
+        Ok(Self { constant, resistance, spin, lift })
+    }
+
+    /// The spin at the time `t`, in rad/s.
+    pub fn spin(&self, t: &Real) -> Vector {
+        self.spin.at(t)
+    }
+
+    /// The same field about a ball that spins with `spin` (rad/s) at the time `t`.
+    pub fn spun(self, spin: &Vector, t: &Real) -> Self {
+        let start = if self.spin.decay.is_zero() { spin.clone() } else { scale(spin, &(&self.spin.decay * t).exp()) };
+        Self { spin: Spin { start, ..self.spin }, ..self }
     }
 
     /// Whether nothing but gravity acts.
@@ -119,7 +142,7 @@ impl Field {
             a = sub(&a, &scale(&u, &by));
         }
         if let Some(lift) = &self.lift {
-            a = add(&a, &cross(&lift.at(t), &sub(v, &lift.wind)));
+            a = add(&a, &scale(&cross(&self.spin(t), &sub(v, &lift.wind)), &lift.factor));
         }
         a
     }
@@ -134,7 +157,7 @@ impl Field {
         // Coefficients of u = v - w.
         let mut u = vec![sub(v, &wind)];
         let mut force = QuadraticForce::new(&u[0]);
-        let spin = self.lift.as_ref().map(|lift| lift.series(t));
+        let spin = self.lift.as_ref().map(|lift| self.spin.series(t, &lift.factor));
         for k in 0..ORDER {
             let mut a = if k == 0 { self.constant.clone() } else { zero() };
             let resisted = match &self.resistance {
@@ -162,15 +185,15 @@ impl Field {
     }
 }
 
-impl Lift {
-    /// Spin and factor at the time `t`.
+impl Spin {
+    /// It at the time `t`.
     fn at(&self, t: &Real) -> Vector {
-        if self.decay.is_zero() { self.spin.clone() } else { scale(&self.spin, &(-&(&self.decay * t)).exp()) }
+        if self.decay.is_zero() { self.start.clone() } else { scale(&self.start, &(-&(&self.decay * t)).exp()) }
     }
 
-    /// Its series from the time `t`.
-    fn series(&self, t: &Real) -> Vec<Vector> {
-        let mut series = vec![self.at(t)];
+    /// Its series from the time `t`, times `factor`.
+    fn series(&self, t: &Real, factor: &Real) -> Vec<Vector> {
+        let mut series = vec![scale(&self.at(t), factor)];
         for k in 1..=ORDER {
             let next = scale(&series[k - 1], &(-&(&self.decay / &Real::from(k as f64))));
             series.push(next);

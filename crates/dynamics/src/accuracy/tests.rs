@@ -2,7 +2,10 @@
 
 use super::*;
 use crate::body::Ball;
-use crate::effects::{drag::Drag, friction::Friction, gravity::Gravity, restitution::Restitution};
+use crate::effects::{
+    drag::Drag, friction::Friction, gravity::Gravity, grip::Grip, magnus::Magnus, restitution::Restitution,
+    spin_decay::SpinDecay,
+};
 use crate::scene::{Method, Scene};
 use crate::surface::{Material, Shape, Surface};
 use carom_geometry::plane::Plane;
@@ -57,7 +60,8 @@ fn r26_euler_obeys_its_laws_to_the_letter() {
 fn r26_orders_are_those_of_the_textbook() {
     let report = counted(&throw());
     assert_eq!(report.reference, ReferenceKind::Extended);
-    for variant in [Variant::Euler, Variant::SemiImplicitEuler, Variant::Rk4, Variant::Adaptive] {
+    for variant in [Variant::Euler, Variant::SemiImplicitEuler, Variant::Rk4, Variant::DormandPrince, Variant::Adaptive]
+    {
         let order = sweep(&report, variant).flight_order.value().unwrap_or(f64::NAN);
         let right = f64::from(variant.textbook_orders().unwrap()[0]);
         assert!((order - right).abs() < 0.1, "{variant:?}: {order}");
@@ -66,6 +70,33 @@ fn r26_orders_are_those_of_the_textbook() {
     let linear = sweep(&counted(&drop()), Variant::Rk4LinearF).order.value().unwrap_or(f64::NAN);
     assert!((1.5..2.5).contains(&linear), "{linear}");
     assert!(report.remarks.contains(&Remark::NoExactFlight));
+}
+
+#[test]
+fn r26_a_ball_that_spins_and_is_gripped_is_held_against_the_solver_of_128_bits() {
+    let grip = Grip::new(0.4).unwrap().with_tangential(0.25).unwrap();
+    let mut spun = throw();
+    spun.magnus = Some(Magnus::new(0.5, 1.25).unwrap());
+    spun.spin_decay = Some(SpinDecay::new(2.0).unwrap());
+    spun.surfaces[0].material.friction = Friction::Grip(grip);
+    let ball = Ball::new(Point3::new(0.0, 0.0, 1.0), Vector3::new(9.0, 1.0, -2.0), 0.03125, Some(0.058)).unwrap();
+    spun.balls = vec![ball.spinning(Vector3::new(20.0, 300.0, 5.0)).unwrap()];
+    let report = counted(&spun);
+    assert_eq!(report.reference, ReferenceKind::Extended);
+    assert!(report.impacts >= 2, "{}", report.impacts);
+    let finest = sweep(&report, Variant::Adaptive).measurements.last().unwrap();
+    assert!(finest.errors.position < 1e-12 && finest.errors.missed == 0, "{:e}", finest.errors.position);
+    let order = sweep(&report, Variant::Rk4).flight_order.value().unwrap_or(f64::NAN);
+    assert!((order - 4.0).abs() < 0.1, "{order}");
+}
+
+#[test]
+fn a_reference_that_is_only_finer_says_how_far_it_is_off() {
+    let sphere = Scene { drag: Some(Drag::sphere(1.2, 1.8e-5).unwrap()), ..throw() };
+    let balls = vec![Ball::new(Point3::new(0.0, 0.0, 1.0), Vector3::x(), 0.02, Some(0.0027)).unwrap()];
+    let report = counted(&Scene { balls, ..sphere });
+    assert!(matches!(report.reference, ReferenceKind::Itself(_)), "{:?}", report.reference);
+    assert!(report.reference_error > 1e-17 && report.reference_error < 1e-11, "{:e}", report.reference_error);
 }
 
 #[test]

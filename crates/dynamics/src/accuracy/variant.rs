@@ -21,6 +21,9 @@ pub enum Variant {
     Rk4LinearF,
     /// Runge and Kutta's method with f on its own curve.
     Rk4,
+    /// The formula of Dormand and Prince's pair with steps that are given, in the loop of the slides, f on its own curve: it shows the order that
+    /// steps of its own choice, which jump, hide.
+    DormandPrince,
     /// Dormand and Prince's pair.
     Adaptive,
     /// The exact flight.
@@ -49,13 +52,14 @@ pub enum Approach {
 
 impl Variant {
     /// All, in the order of care.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Slides,
         Self::SlidesOwnF,
         Self::Euler,
         Self::SemiImplicitEuler,
         Self::Rk4LinearF,
         Self::Rk4,
+        Self::DormandPrince,
         Self::Adaptive,
         Self::Exact,
     ];
@@ -69,6 +73,7 @@ impl Variant {
             Self::SemiImplicitEuler => "semi-implicit-euler",
             Self::Rk4LinearF => "rk4+linear-f",
             Self::Rk4 => "rk4",
+            Self::DormandPrince => "dormand-prince",
             Self::Adaptive => "adaptive",
             Self::Exact => "exact",
         }
@@ -83,6 +88,7 @@ impl Variant {
             Self::SemiImplicitEuler => "the same, velocity before position",
             Self::Rk4LinearF => "Runge-Kutta in the slides' loop, linear f",
             Self::Rk4 => "Runge-Kutta, f on its own curve, robust",
+            Self::DormandPrince => "the pair's formula in the slides' loop, given steps",
             Self::Adaptive => "Dormand-Prince 5(4), steps by itself",
             Self::Exact => "parabolas in closed form",
         }
@@ -105,7 +111,7 @@ impl Variant {
             Self::Slides | Self::SlidesOwnF | Self::Euler | Self::SemiImplicitEuler => Some([1, 1]),
             Self::Rk4LinearF => Some([4, 2]),
             Self::Rk4 => Some([4, 4]),
-            Self::Adaptive => Some([5, 5]),
+            Self::DormandPrince | Self::Adaptive => Some([5, 5]),
             Self::Exact => None,
         }
     }
@@ -120,6 +126,7 @@ impl Variant {
             Self::SemiImplicitEuler => Approach::Method(Method::SemiImplicitEuler { step: value }),
             Self::Rk4LinearF => textbook(Stepping::Rk4, Determination::Linear),
             Self::Rk4 => Approach::Method(Method::Rk4 { step: value }),
+            Self::DormandPrince => textbook(Stepping::DormandPrince, Determination::OwnCurve),
             Self::Adaptive => Approach::Method(Method::Adaptive { tolerance: value }),
             Self::Exact => Approach::Method(Method::Exact),
         }

@@ -46,6 +46,11 @@ impl Grip {
         self.mu
     }
 
+    /// The tangential restitution e_x.
+    pub fn tangential(&self) -> f64 {
+        self.e_x
+    }
+
     /// The coefficient of rolling resistance.
     pub fn rolling(&self) -> f64 {
         self.c_rr

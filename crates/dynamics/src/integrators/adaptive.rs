@@ -76,38 +76,48 @@ impl Adaptive {
         h: f64,
         acceleration: &mut impl FnMut(&State, f64) -> Vector3<f64>,
     ) -> (Step, f64) {
-        let State { position: x, velocity: v } = *state;
-        let zero = Vector3::zeros();
-        // Stages relative to v, so that the straight part h v of the path stays exact: u = (v at the stage) - v.
-        let mut a = [acceleration(state, 0.0), zero, zero, zero, zero, zero, zero];
-        let mut u = [zero; 7];
-        for (row, weights) in A.iter().enumerate() {
-            let stage = row + 1;
-            let (mut share, mut dv, mut dx) = (0.0, zero, zero);
-            for (k, w) in weights.iter().enumerate().take(stage) {
-                share += w;
-                dv += a[k] * *w;
-                dx += u[k] * *w;
-            }
-            u[stage] = dv * h;
-            let at = State { position: x + (v * share + dx) * h, velocity: v + u[stage] };
-            a[stage] = acceleration(&at, share * h);
-        }
-        let (x_terms, x_error) = dense(&u, h);
-        let (v_terms, v_error) = dense(&a, h);
-        let speed = v.norm().max((v + u[6]).norm()).max(a[0].norm() * h);
-        let allowed = self.tolerance * speed;
-        let worst = v_error.norm().max(x_error.norm() / h);
-        let error = if worst == 0.0 { 0.0 } else { worst / allowed };
-        let step = Step {
-            path: Path::from_terms(x, &[v * h + x_terms[0], x_terms[1], x_terms[2], x_terms[3]]),
-            velocity: [v, v_terms[0], v_terms[1], v_terms[2], v_terms[3]],
-            seconds: h,
-            to: 1.0,
-            exact: false,
-        };
+        let (step, error, speed) = attempt(state, h, acceleration);
+        let error = if error == 0.0 { 0.0 } else { error / (self.tolerance * speed) };
         (step, error)
     }
+}
+
+/// One step of `h` seconds, whatever its error.
+pub fn step(state: &State, h: f64, mut acceleration: impl FnMut(&State, f64) -> Vector3<f64>) -> Step {
+    attempt(state, h, &mut acceleration).0
+}
+
+/// One step of `h` seconds, its error and the greatest speed in it, both in m/s.
+fn attempt(state: &State, h: f64, acceleration: &mut impl FnMut(&State, f64) -> Vector3<f64>) -> (Step, f64, f64) {
+    let State { position: x, velocity: v } = *state;
+    let zero = Vector3::zeros();
+    // Stages relative to v, so that the straight part h v of the path stays exact: u = (v at the stage) - v.
+    let mut a = [acceleration(state, 0.0), zero, zero, zero, zero, zero, zero];
+    let mut u = [zero; 7];
+    for (row, weights) in A.iter().enumerate() {
+        let stage = row + 1;
+        let (mut share, mut dv, mut dx) = (0.0, zero, zero);
+        for (k, w) in weights.iter().enumerate().take(stage) {
+            share += w;
+            dv += a[k] * *w;
+            dx += u[k] * *w;
+        }
+        u[stage] = dv * h;
+        let at = State { position: x + (v * share + dx) * h, velocity: v + u[stage] };
+        a[stage] = acceleration(&at, share * h);
+    }
+    let (x_terms, x_error) = dense(&u, h);
+    let (v_terms, v_error) = dense(&a, h);
+    let speed = v.norm().max((v + u[6]).norm()).max(a[0].norm() * h);
+    let worst = v_error.norm().max(x_error.norm() / h);
+    let step = Step {
+        path: Path::from_terms(x, &[v * h + x_terms[0], x_terms[1], x_terms[2], x_terms[3]]),
+        velocity: [v, v_terms[0], v_terms[1], v_terms[2], v_terms[3]],
+        seconds: h,
+        to: 1.0,
+        exact: false,
+    };
+    (step, worst, speed)
 }
 
 /// The quartic of the dense output from the stages `k` of one component, and the error estimate at its end.

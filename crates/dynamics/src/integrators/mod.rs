@@ -39,6 +39,8 @@ pub enum Stepping {
     SemiImplicitEuler,
     /// Runge-Kutta of order 4.
     Rk4,
+    /// The fifth-order formula of Dormand and Prince's pair.
+    DormandPrince,
 }
 
 /// A method at work on one ball.
@@ -88,6 +90,9 @@ impl Integrator {
                 euler::semi_implicit(state, forces.acceleration(state, counters), timestep)
             }
             Integrator::Stepping(Stepping::Rk4, _) => rk4::step(forces, state, timestep, counters),
+            Integrator::Stepping(Stepping::DormandPrince, _) => {
+                adaptive::step(state, timestep, |s, after| forces.acceleration_after(s, after, counters))
+            }
             Integrator::Damped(flight) => {
                 flight.step(state, timestep, &forces.acceleration(state, counters), &forces.constant)
             }

@@ -16,6 +16,12 @@ use nalgebra::Vector3;
 /// Faces of one plane that a stretch of sliding crosses before it is cut after all.
 const MAX_CROSSINGS: usize = 4096;
 
+/// The carrier that is pressed most, or the first if none is.
+fn main_carrier<'a>(carriers: &'a [Carrier], balance: &Balance) -> Option<&'a Carrier> {
+    let main = balance.loads.loads().max_by(|a, b| a.1.total_cmp(&b.1));
+    carriers.get(main.map_or(0, |(main, _)| main))
+}
+
 impl<O: Observer> Walk<'_, O> {
     /// The contacts as carriers.
     pub(super) fn carriers(&self) -> PerContact<Carrier> {
@@ -65,12 +71,8 @@ impl<O: Observer> Walk<'_, O> {
         let still = State { velocity: Vector3::zeros(), ..self.state };
         let a = self.forces.acceleration(&still, &mut self.counters);
         let balance = Balance::of(&a, &carriers, &still);
-        let Some((main, _)) = balance.loads.loads().max_by(|a, b| a.1.total_cmp(&b.1)).or(Some((0, 0.0))) else {
-            return false;
-        };
-        let Some(carrier) = carriers.get(main) else { return false };
-        let pressed = -carrier.contact.normal.dot(&a);
-        let threshold = self.plan.rest.at(pressed.max(0.0)).speed;
+        let Some(carrier) = main_carrier(&carriers, &balance) else { return false };
+        let threshold = self.slowest(carrier, &a);
         let slow = self.state.velocity.norm() <= threshold || balance.sticks;
         if !(slow && balance.holds()) || (self.spins && self.turns_on(&carriers, threshold)) {
             return false;
@@ -83,6 +85,11 @@ impl<O: Observer> Walk<'_, O> {
         }
         self.tell(EventKind::Rest, &contact, velocity_in);
         true
+    }
+
+    /// The speed in m/s up to which a ball with the acceleration `a`, carried by `main` above all, stands.
+    fn slowest(&self, main: &Carrier, a: &Vector3<f64>) -> f64 {
+        self.plan.rest.at((-main.contact.normal.dot(a)).max(0.0)).speed
     }
 
     fn lasting_carriers(&self) -> PerContact<Carrier> {
@@ -114,7 +121,7 @@ impl<O: Observer> Walk<'_, O> {
             return;
         }
         self.begin_rolling(rolls);
-        if self.settling.is_none() && !slips && self.turns_round(&balance) {
+        if self.settling.is_none() && !slips && self.turns_round(&a, &carriers, &balance) {
             self.state.velocity = Vector3::zeros();
             self.contacts.iter_mut().for_each(|c| c.rate = 0.0);
         }
@@ -204,11 +211,12 @@ impl<O: Observer> Walk<'_, O> {
         Some(Slide { step: exact::step(&self.state, -v / seconds, seconds), stops: true })
     }
 
-    /// Whether a ball that friction cannot hold is so slow that it stands, before it sets out the other way.
-    fn turns_round(&self, balance: &Balance) -> bool {
+    /// Whether a ball that friction cannot hold is so slow that it stands, before it sets out the other way: at the speed of the rest test, so that
+    /// what is held has come to rest by then, or slides on until it has.
+    fn turns_round(&self, a: &Vector3<f64>, carriers: &[Carrier], balance: &Balance) -> bool {
         let v = self.state.velocity;
-        let load: f64 = balance.loads.loads().map(|(_, load)| load).sum();
-        balance.friction > 0.0 && balance.free.dot(&v) < 0.0 && v.norm() <= self.plan.rest.at(load).speed
+        let slowest = main_carrier(carriers, balance).map_or(0.0, |main| self.slowest(main, a));
+        balance.friction > 0.0 && !balance.holds() && balance.free.dot(&v) < 0.0 && v.norm() <= slowest
     }
 
     /// Where in `step` the last of `carriers` stops carrying: the ball leaves an edge too fast for its curve, or the air lifts it.
