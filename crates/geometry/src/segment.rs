@@ -2,7 +2,7 @@
 
 use crate::closest::Feature;
 use crate::exact::{self, Exact, ExactVector};
-use crate::predicates::{Sign, orient3d, orient3d_exact, orient3d_value};
+use crate::predicates::{Sign, orient3d, orient3d_exact, orient3d_values};
 use crate::rounding::{SEGMENT_FRACTION_BOUND, UNIT_ROUNDOFF};
 use nalgebra::Point3;
 
@@ -30,7 +30,11 @@ pub enum SegmentHit {
 /// the segment or the point that it covers; so is a segment without a length.
 pub fn segment_hits_triangle(p0: &Point3<f64>, p1: &Point3<f64>, triangle: &[Point3<f64>; 3]) -> SegmentHit {
     let [a, b, c] = triangle;
-    let (s0, s1) = (orient3d(a, b, c, p0), orient3d(a, b, c, p1));
+    let heights = orient3d_values(triangle, [p0, p1]);
+    let sign = |(value, bound): (f64, f64), p: &Point3<f64>| {
+        if value.abs() > bound { Sign::of(value) } else { orient3d(a, b, c, p) }
+    };
+    let (s0, s1) = (sign(heights[0], p0), sign(heights[1], p1));
     match (s0, s1) {
         (Sign::Zero, Sign::Zero) => return coplanar(p0, p1, triangle),
         _ if s0 == s1 => return SegmentHit::Miss,
@@ -44,7 +48,7 @@ pub fn segment_hits_triangle(p0: &Point3<f64>, p1: &Point3<f64>, triangle: &[Poi
     let f = match (s0, s1) {
         (Sign::Zero, _) => 0.0,
         (_, Sign::Zero) => 1.0,
-        _ => fraction(p0, p1, triangle),
+        _ => fraction(p0, p1, triangle, heights),
     };
     SegmentHit::Hit { f, feature: feature(sides.map(|s| s == Sign::Zero)), coplanar: false }
 }
@@ -63,8 +67,14 @@ fn feature(on: [bool; 3]) -> Feature {
 }
 
 /// f = d0 / (d0 - d1) (R8) of end points strictly on either side of the plane, rounded down.
-fn fraction(p0: &Point3<f64>, p1: &Point3<f64>, [a, b, c]: &[Point3<f64>; 3]) -> f64 {
-    let ((d0, e0), (d1, e1)) = (orient3d_value(a, b, c, p0), orient3d_value(a, b, c, p1));
+///
+/// `heights` are d0 and d1 in some unit, computed, each with a bound on its error.
+fn fraction(
+    p0: &Point3<f64>,
+    p1: &Point3<f64>,
+    [a, b, c]: &[Point3<f64>; 3],
+    [(d0, e0), (d1, e1)]: [(f64, f64); 2],
+) -> f64 {
     let (d0, d1) = (d0.abs(), d1.abs());
     let whole = d0 + d1;
     // f grows with d0 and falls with d1, so this is below the exact one; 4 u for the four roundings.
