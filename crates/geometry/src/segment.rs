@@ -300,7 +300,7 @@ mod tests {
             let zero = Exact::ZERO;
             if (d0 > zero && d1 < zero) || (d0 < zero && d1 > zero) {
                 let want = &d0 / (&d0 - d1);
-                let early = exact::nearest(&(want - exact::exact(fraction(&p0, &p1, &t))));
+                let early = exact::nearest(&(want - exact::exact(fraction(&p0, &p1, &t, orient3d_values(&t, [&p0, &p1])))));
                 prop_assert!((0.0..=SEGMENT_FRACTION_BOUND).contains(&early), "early by {early:e}");
             }
         }
