@@ -6,6 +6,7 @@ use crate::counters::Counters;
 use crate::integrators::Step;
 use crate::plan::Plan;
 use crate::tolerance::{merge_angle_squared, rate_rounding, touch_distance};
+use carom_geometry::bounds::amax;
 use carom_geometry::clearance::{Clearance, Entry};
 use carom_geometry::contact::{Hold, MovingBall};
 use carom_geometry::mesh::Fold;
@@ -146,7 +147,7 @@ impl<'a> Obstacles<'a> {
 
     /// When the path of `step` returns to each of `contacts`; never to a lasting one, along which it moves.
     pub fn returns(&self, step: &Step, contacts: &[Contact], counters: &mut Counters) -> Returns {
-        let slack = touch_distance(step.path.start().coords.amax().max(self.radius), 0.0);
+        let slack = touch_distance(amax(&step.path.start().coords).max(self.radius), 0.0);
         contacts
             .iter()
             .map(|contact| {

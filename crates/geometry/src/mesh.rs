@@ -116,6 +116,7 @@ pub struct Mesh {
     topology: Topology,
     vertex_faces: VertexFaces,
     bvh: Bvh,
+    face_size: f64,
 }
 
 /// Unit normals by face.
@@ -178,7 +179,8 @@ impl Mesh {
             if repeats.contains(&(f as u32)) { Aabb::empty() } else { box_of() }
         });
         let vertex_faces = VertexFaces::of(vertices.len(), &faces, repeats);
-        Self { vertices, faces, normals, topology, vertex_faces, bvh }
+        let face_size = bvh.bounds().extent().amax() / (faces.len() as f64).sqrt();
+        Self { vertices, faces, normals, topology, vertex_faces, bvh, face_size }
     }
 
     /// The vertices, as given.
@@ -233,6 +235,11 @@ impl Mesh {
     /// The tree over the faces' boxes; its items are the faces.
     pub fn bvh(&self) -> &Bvh {
         &self.bvh
+    }
+
+    /// About the length of a side of a face, from the size of the mesh and the number of faces.
+    pub(crate) fn face_size(&self) -> f64 {
+        self.face_size
     }
 
     /// How the surface goes on across `side` of `face`, seen from the front of `face`: the side its normal points to.

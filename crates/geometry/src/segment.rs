@@ -41,7 +41,12 @@ pub fn segment_hits_triangle(p0: &Point3<f64>, p1: &Point3<f64>, triangle: &[Poi
         _ => {}
     }
     // The line meets the plane in one point, inside if it passes all edges on one side.
-    let sides = [orient3d(p0, p1, a, b), orient3d(p0, p1, b, c), orient3d(p0, p1, c, a)];
+    let side = |q: &Point3<f64>, r: &Point3<f64>| {
+        // The sign of orient3d(p0, p1, q, r), from p0: what the three have in common is computed once.
+        let [(value, bound)] = orient3d_values(&[*p0, *q, *r], [p1]);
+        if value.abs() > bound { Sign::of(value) } else { orient3d(p0, p1, q, r) }
+    };
+    let sides = [side(a, b), side(b, c), side(c, a)];
     if sides.contains(&Sign::Positive) && sides.contains(&Sign::Negative) {
         return SegmentHit::Miss;
     }

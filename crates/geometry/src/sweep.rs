@@ -4,6 +4,7 @@ mod search;
 mod surroundings;
 mod touch;
 
+use crate::bounds::{amax, largest};
 use crate::contact::MovingBall;
 use crate::mesh::Mesh;
 pub use surroundings::Surroundings;
@@ -42,14 +43,9 @@ impl Mesh {
         self.first_contact_around(ball, to, free_until, &mut Surroundings::default(), work)
     }
 
-    /// About the length of a side of a face, from the size of the mesh and the number of faces.
-    fn face_size(&self) -> f64 {
-        self.bounds().extent().amax() / (self.faces().len() as f64).sqrt()
-    }
-
     /// How far along an axis the mesh reaches from `x`.
     fn farthest_from(&self, x: &nalgebra::Point3<f64>) -> f64 {
-        (self.bounds().min() - x).amax().max((self.bounds().max() - x).amax())
+        largest(amax(&(self.bounds().min() - x)), amax(&(self.bounds().max() - x)))
     }
 }
 

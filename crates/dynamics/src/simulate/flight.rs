@@ -11,6 +11,7 @@ use crate::response::{collapse, respond};
 use crate::tolerance::{
     COLLAPSE_AFTER, clock_bound, impact_time_bound, merge_angle_squared, rate_rounding, touch_distance,
 };
+use carom_geometry::bounds::amax;
 use carom_geometry::clearance::Entry;
 use nalgebra::Vector3;
 
@@ -195,7 +196,7 @@ impl<O: Observer> Walk<'_, O> {
 
     /// What counts as touching here.
     pub(super) fn touch_tolerance(&self, travelled: f64) -> f64 {
-        let here = self.state.position.coords.amax().max(self.forces.ball.radius());
+        let here = amax(&self.state.position.coords).max(self.forces.ball.radius());
         // Contact with a face is found to the rounding of its corners as well; planes have none.
         let corners = if self.plan.meshes.is_empty() { 0.0 } else { self.plan.farthest };
         touch_distance(here + corners, travelled)

@@ -1,7 +1,7 @@
 //! What a ball touches where it is: faces, and the edges and vertices that no touched face hides.
 
 use super::{Surroundings, Work};
-use crate::bounds::Aabb;
+use crate::bounds::{Aabb, amax};
 use crate::closest::{Asked, Feature};
 use crate::mesh::{Fold, Mesh};
 use crate::rounding::{position_bound, screen_bound};
@@ -68,7 +68,7 @@ impl Mesh {
         tolerance: f64,
         work: &mut Work,
     ) -> SmallVec<[Touch; 4]> {
-        let Some(faces) = around.left_at(f, tolerance + position_bound(centre.coords.amax())) else {
+        let Some(faces) = around.left_at(f, tolerance + position_bound(amax(&centre.coords))) else {
             return self.touches(centre, heading, radius, tolerance, work);
         };
         let mut touching = Touching::new(self, centre, heading, radius, tolerance);
