@@ -1,7 +1,9 @@
 //! Times the same work by Carom, rapier3d and parry3d, in one run on one machine, and prints a table in Markdown.
 //!
 //! `carom-peers [BALLS]`: so many balls on the terrain for rapier, which takes a hundred times as long for each.
+//! `carom-peers conformance PACK OUT` writes what rapier makes of the conformance pack instead.
 
+mod conformance;
 mod parry;
 mod rapier;
 
@@ -35,7 +37,13 @@ struct Row {
 }
 
 fn main() -> Result<()> {
-    let rapier_balls = std::env::args().nth(1).map_or(Ok(500), |n| n.parse())?;
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    if let [task, pack, out] = arguments.as_slice()
+        && task == "conformance"
+    {
+        return conformance::run(pack.as_ref(), out.as_ref());
+    }
+    let rapier_balls = arguments.first().map_or(Ok(500), |n| n.parse())?;
     let rows = [one_ball()?, terrain_balls(rapier_balls)?, room()?, segments()?, one_triangle(), prediction()?];
     println!("| work | Carom | peer | ratio |\n|---|---|---|---|");
     for Row { work, unit, carom, peer, theirs } in rows {

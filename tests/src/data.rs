@@ -1,5 +1,6 @@
 //! Reading the test data that lies in `tests/data`.
 
+use carom_geometry::triangle::Feature;
 use std::path::PathBuf;
 
 /// The text of a file in `tests/data`; panics with its name if it cannot be read.
@@ -19,4 +20,17 @@ pub fn csv(path: &str, header: &str) -> Vec<Vec<String>> {
 /// The number in a cell; panics with the cell if it is none.
 pub fn number(cell: &str) -> f64 {
     cell.parse().unwrap_or_else(|e| panic!("{cell:?}: {e}"))
+}
+
+/// What the tables of cases call a part of a triangle.
+pub fn feature_name(feature: Feature) -> &'static str {
+    match feature {
+        Feature::Face => "face",
+        Feature::Edge(0) => "edgeAB",
+        Feature::Edge(1) => "edgeBC",
+        Feature::Edge(_) => "edgeCA",
+        Feature::Vertex(0) => "vertexA",
+        Feature::Vertex(1) => "vertexB",
+        Feature::Vertex(_) => "vertexC",
+    }
 }

@@ -3,8 +3,8 @@
 use carom_geometry::contact::{Contact, MovingBall, first_contact};
 use carom_geometry::path::Path;
 use carom_geometry::rounding::{UNIT_ROUNDOFF, contact_bound, contact_doubt, point_radius};
-use carom_geometry::triangle::{Feature, closest_point};
-use carom_tests::data::{csv, number};
+use carom_geometry::triangle::closest_point;
+use carom_tests::data::{csv, feature_name, number};
 use carom_tests::exact;
 use carom_tests::random::Random;
 use nalgebra::{Point3, Vector3};
@@ -104,18 +104,6 @@ impl Case {
     }
 }
 
-fn name(feature: Feature) -> &'static str {
-    match feature {
-        Feature::Face => "face",
-        Feature::Edge(0) => "edgeAB",
-        Feature::Edge(1) => "edgeBC",
-        Feature::Edge(_) => "edgeCA",
-        Feature::Vertex(0) => "vertexA",
-        Feature::Vertex(1) => "vertexB",
-        Feature::Vertex(_) => "vertexC",
-    }
-}
-
 #[test]
 fn r28_contacts_are_never_missed_and_never_late() {
     let (mut hits, mut features, mut worst_overlap, mut worst_late, mut most_rounds) = (0, 0, 0.0f64, 0.0f64, 0);
@@ -137,7 +125,7 @@ fn r28_contacts_are_never_missed_and_never_late() {
                 worst_overlap = worst_overlap.max(overlap);
                 worst_late = worst_late.max((f - high) * case.closing(f * unit).0 * unit / case.bound(&answer, f));
             }
-            features += usize::from(case.radius == 0.0 || name(feature) == case.feature);
+            features += usize::from(case.radius == 0.0 || feature_name(feature) == case.feature);
         }
     }
     println!(

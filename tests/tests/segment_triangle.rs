@@ -2,8 +2,7 @@
 
 use carom_geometry::rounding::SEGMENT_FRACTION_BOUND;
 use carom_geometry::segment::{SegmentHit, segment_hits_triangle};
-use carom_geometry::triangle::Feature;
-use carom_tests::data::{csv, number};
+use carom_tests::data::{csv, feature_name, number};
 use carom_tests::nasty;
 use nalgebra::Point3;
 
@@ -33,7 +32,7 @@ fn r44_hard_cases_have_the_exact_answer() {
                     "cross" => assert!(!coplanar, "case {}", row[0]),
                     other => panic!("unknown contact {other}"),
                 }
-                features += usize::from(name(feature) == row[20]);
+                features += usize::from(feature_name(feature) == row[20]);
             }
             (got, expected) => panic!("case {}: {got:?}, but the exact label is {expected}", row[0]),
         }
@@ -41,18 +40,6 @@ fn r44_hard_cases_have_the_exact_answer() {
     println!("{hits} hits, f early by {:e} at worst, {features} features as named", earliest);
     assert_eq!(hits, 939);
     assert_eq!(features, hits);
-}
-
-fn name(feature: Feature) -> &'static str {
-    match feature {
-        Feature::Face => "face",
-        Feature::Edge(0) => "edgeAB",
-        Feature::Edge(1) => "edgeBC",
-        Feature::Edge(_) => "edgeCA",
-        Feature::Vertex(0) => "vertexA",
-        Feature::Vertex(1) => "vertexB",
-        Feature::Vertex(_) => "vertexC",
-    }
 }
 
 #[test]

@@ -11,6 +11,7 @@ mod picture;
 mod accuracy;
 mod kept;
 mod certification;
+mod conformance;
 mod measure;
 mod readme;
 mod instructions;
@@ -54,6 +55,7 @@ Tasks:
   instructions                counts the instructions of a dozen operations and compares them with those kept
   instructions --update       keeps them
   peers                       builds rapier3d and parry3d, times the same work by them and by Carom, and prints ratios
+  peers conformance           lets rapier3d and Carom play the conformance pack; table, README
   scaling                     times runs of growing size and fits exponents
 
 Exit code: 0 all is well; 1 a step failed; 2 usage.";
@@ -75,6 +77,7 @@ fn main() -> ExitCode {
         ["instructions"] => instructions::run(false),
         ["instructions", "--update"] => instructions::run(true),
         ["peers"] => measure::peers(),
+        ["peers", "conformance"] => conformance::engines(),
         ["scaling"] => measure::scaling(),
         ["conformance"] => tests_bin::run(&["--bin", "conformance", "--", "conformance"]),
         ["soak", ref rest @ ..] => tests_bin::run(&[&["--release", "--bin", "soak", "--"], rest].concat()),

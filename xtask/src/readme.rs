@@ -1,7 +1,7 @@
 //! The generated blocks of the README: `cargo xtask readme` writes them, and `verify` compares them.
 
 use crate::project::{Carom, Project, output};
-use crate::{Result, accuracy, blocks, certification, measure};
+use crate::{Result, accuracy, blocks, certification, conformance, measure};
 use std::fs;
 use std::process::ExitCode;
 
@@ -72,6 +72,7 @@ fn make(project: &Project, carom: &Carom, name: &str) -> Result<String> {
         ("certification", "") => certification::TABLE.block(project),
         ("peers", "") => measure::PEERS.block(project),
         ("scaling", "") => measure::SCALING.block(project),
+        ("conformance", "") => conformance::block(project),
         ("example", package) => example(project, package),
         ("file", path) => Ok(fenced(path.rsplit('.').next().unwrap_or_default(), &project.read(path)?)),
         _ => Err("nothing makes a block of this name".into()),

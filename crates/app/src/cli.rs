@@ -134,7 +134,7 @@ pub struct SimulationArgs {
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     pub balls: Option<PathBuf>,
     /// Simulate with N threads; the output is the same bytes for any N [default: one per processor]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = threads)]
     pub threads: Option<NonZeroUsize>,
     /// Print nothing but errors
     #[arg(long, short)]
@@ -277,7 +277,8 @@ pub struct ExportArgs {
     pub output: PathBuf,
     /// What the motion is given by: `events`, or `fps=N` for programs that ignore velocities
     ///
-    /// `fps=N` is a position for every N-th of a second, and straight lines between them.
+    /// `fps=N` is a position for every N-th of a second, and straight lines between them: a ball that turns more than half
+    /// way round in that time then seems to turn otherwise.
     #[arg(long, value_name = "KEYS", default_value = "events", value_parser = keys)]
     pub keys: Keys,
     /// What to simulate.
@@ -331,6 +332,11 @@ pub struct MaterialsArgs {
 pub struct CompletionsArgs {
     /// The shell
     pub shell: Shell,
+}
+
+/// Reads a number of threads.
+fn threads(word: &str) -> Result<NonZeroUsize, String> {
+    word.parse().map_err(|_| "it must be a whole number from 1".to_owned())
 }
 
 /// Reads a finite number above 0.

@@ -5,7 +5,7 @@ mod table;
 use crate::replay::{BallRun, Replay};
 use carom_dynamics::body::State;
 use carom_dynamics::effects::gravity::Gravity;
-use carom_dynamics::energy::{kinetic, potential};
+use carom_dynamics::energy::{kinetic, potential, rotational};
 use carom_dynamics::events::EventKind;
 use nalgebra::Vector3;
 pub use table::read;
@@ -36,7 +36,7 @@ pub struct Sample {
     pub climb: f64,
     /// In m/s.
     pub speed: f64,
-    /// Kinetic energy, in J/kg.
+    /// Kinetic energy, that of turning too, in J/kg.
     pub kinetic: f64,
     /// Potential energy in gravity, in J/kg, from the origin; none where gravity is not known.
     pub potential: Option<f64>,
@@ -60,13 +60,18 @@ pub fn of_run(replay: &Replay, up: &Vector3<f64>) -> Vec<Curve> {
     let gravity = replay.scene.gravity;
     let curve = |(ball, run): (usize, &BallRun)| {
         let mut samples = Vec::new();
+        let body = &replay.scene.balls[ball];
         for segment in &run.trajectory.segments {
             let length = segment.end - segment.time;
             // A thousandth of the run is less than a pixel.
             let parts = if length * 1000.0 < replay.scene.duration { 4 } else { POINTS };
             for k in 0..=parts {
                 let time = segment.time + length * f64::from(k) / f64::from(parts);
-                samples.push(Sample::of(time, &segment.at(time), up, Some(gravity)));
+                let mut sample = Sample::of(time, &segment.at(time), up, Some(gravity));
+                if let Some(spin) = segment.spin_at(time) {
+                    sample.kinetic += rotational(body.inertia(), body.radius(), &spin);
+                }
+                samples.push(sample);
             }
         }
         let events = &run.trajectory.events;

@@ -220,8 +220,8 @@ impl Summary {
             line("balls", &count(self.balls as u64)),
             line("impacts", &count(self.impacts)),
             line("at end", &format!("{resting} resting, {sliding} sliding, {rolling}{flying} flying{off}")),
-            line("time", &format!("{} s simulated{clock}", self.duration)),
-            line("energy", &format!("{start:.6e} {unit} at start, {end:.6e} {unit} at end{change}")),
+            line("time", &format!("{} s simulated{clock}", figure(self.duration))),
+            line("energy", &format!("{} {unit} at start, {} {unit} at end{change}", figure(*start), figure(*end))),
         ]
     }
 
@@ -268,6 +268,12 @@ fn count(n: u64) -> String {
         grouped.push(digit);
     }
     grouped
+}
+
+/// Seven digits that count, with an exponent only where there would be more noughts than digits.
+fn figure(x: f64) -> String {
+    let rounded: f64 = format!("{x:.6e}").parse().unwrap_or(x);
+    if x == 0.0 || (1e-3..1e9).contains(&x.abs()) { format!("{rounded}") } else { format!("{rounded:e}") }
 }
 
 /// Two decimals, or the order of magnitude where they would say nothing.

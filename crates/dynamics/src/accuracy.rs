@@ -14,6 +14,7 @@ mod measure;
 mod real;
 mod record;
 mod report;
+mod resistance;
 mod resolution;
 mod settle;
 mod stage;

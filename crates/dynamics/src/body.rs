@@ -16,6 +16,20 @@ pub struct State {
 pub const SOLID_SPHERE: f64 = 0.4;
 
 /// A ball: where it starts, how fast, how large, how heavy; and what only some effects ask for, its spin and how its mass lies.
+///
+/// ```
+/// use carom_dynamics::body::Ball;
+/// use nalgebra::{Point3, Vector3};
+///
+/// // A tennis ball 1 m up, at 20 m/s with topspin: its mass is needed only by effects that divide a force by it.
+/// let ball = Ball::new(Point3::new(0.0, 0.0, 1.0), Vector3::new(20.0, 0.0, 0.0), 0.0335, Some(0.0577))?;
+/// let ball = ball.spinning(Vector3::new(0.0, 200.0, 0.0))?.with_drag(0.55)?;
+/// assert_eq!((ball.radius(), ball.spin().y), (0.0335, 200.0));
+/// // What cannot be is refused, and the error says what could.
+/// let error = Ball::new(Point3::origin(), Vector3::zeros(), -1.0, None).unwrap_err();
+/// assert_eq!(error.to_string(), "radius is -1, but must be finite and >= 0, in m");
+/// # Ok::<(), carom_dynamics::error::ValueError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ball {
     start: State,

@@ -9,6 +9,12 @@ pub fn kinetic(state: &State) -> f64 {
     0.5 * state.velocity.norm_squared()
 }
 
+/// The energy of rotation per mass, I omega^2 / 2 with the moment of inertia I = `alpha` m r^2, in J/kg: of the `radius` in m and the
+/// angular velocity `spin` in rad/s.
+pub fn rotational(alpha: f64, radius: f64, spin: &Vector3<f64>) -> f64 {
+    0.5 * alpha * (spin * radius).norm_squared()
+}
+
 /// The potential energy per mass, -g . x, in J/kg, counted from the plane through the origin; 0 without gravity.
 pub fn potential(state: &State, gravity: Option<Gravity>) -> f64 {
     gravity.map_or(0.0, |g| -g.acceleration().dot(&state.position.coords))
@@ -20,6 +26,20 @@ pub fn potential(state: &State, gravity: Option<Gravity>) -> f64 {
 /// that nothing is negative, a scene may be moved without changing its balance, and a lone ball that falls and comes to rest has lost all it had.
 ///
 /// Each ball counts with its mass, in kg. Where masses are unknown they are all taken as 1 kg, and the balance is per mass.
+///
+/// ```
+/// use carom_dynamics::body::State;
+/// use carom_dynamics::effects::gravity::Gravity;
+/// use carom_dynamics::energy::EnergyBalance;
+/// use nalgebra::{Point3, Vector3};
+///
+/// // 2 kg fall 4 m under g = 8 m/s^2 and lie still.
+/// let mut balance = EnergyBalance::new(Some(Gravity::uniform(Vector3::new(0.0, 0.0, -8.0))?));
+/// let still = |z| State { position: Point3::new(0.0, 0.0, z), velocity: Vector3::zeros() };
+/// balance.add(2.0, &still(4.0), &still(0.0));
+/// assert_eq!((balance.start(), balance.end(), balance.change()), (64.0, 0.0, Some(-1.0)));
+/// # Ok::<(), carom_dynamics::error::ValueError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EnergyBalance {
     gravity: Option<Gravity>,
@@ -51,9 +71,8 @@ impl EnergyBalance {
     /// Adds the rotation of a ball of `mass` with the moment of inertia `alpha` m r^2 and the `radius` in m, whose angular velocity went from
     /// `start` to `end` (rad/s).
     pub fn add_rotation(&mut self, mass: f64, alpha: f64, radius: f64, [start, end]: [Vector3<f64>; 2]) {
-        let energy = |spin: Vector3<f64>| 0.5 * mass * alpha * (spin * radius).norm_squared();
-        self.start += energy(start);
-        self.end += energy(end);
+        self.start += mass * rotational(alpha, radius, &start);
+        self.end += mass * rotational(alpha, radius, &end);
     }
 
     /// At the start, in J (in J/kg summed over the balls, if each counts as 1 kg).

@@ -34,6 +34,37 @@ pub enum EventKind {
 
 /// One event of one ball at one surface. A simultaneous impact at several surfaces is one event for each, at one time and
 /// with the same velocities.
+///
+/// ```
+/// # use carom_dynamics::body::Ball;
+/// # use carom_dynamics::effects::{friction::Friction, gravity::Gravity, restitution::Restitution};
+/// # use carom_dynamics::scene::Scene;
+/// # use carom_dynamics::surface::{Material, Shape, Surface};
+/// # use carom_geometry::plane::Plane;
+/// # use nalgebra::{Point3, Vector3};
+/// # let floor = Plane::from_point_normal(Point3::origin(), Vector3::z())?;
+/// # let material = Material { restitution: Restitution::new(0.5)?, friction: Friction::None };
+/// # let scene = Scene {
+/// #     gravity: Some(Gravity::uniform(Vector3::new(0.0, 0.0, -8.0))?),
+/// #     surfaces: vec![Surface { name: "floor".into(), material, shape: Shape::Plane(floor) }],
+/// #     balls: vec![Ball::new(Point3::new(0.0, 0.0, 4.0), Vector3::zeros(), 0.0, None)?],
+/// #     ..Scene::lasting(3.0)
+/// # };
+/// use carom_dynamics::observer::Trajectory;
+/// use carom_dynamics::plan::Plan;
+/// use carom_dynamics::simulate::simulate;
+///
+/// let plan = Plan::new(&scene)?;
+/// let mut run = Trajectory::default();
+/// simulate(&plan, &plan.balls()[0], &mut run);
+/// let first = &run.events[0];
+/// assert_eq!(plan.balls().len(), 1);
+/// assert_eq!((first.time, first.surface, first.face), (1.0, 0, None));
+/// assert_eq!((first.velocity_in.z, first.velocity.z), (-8.0, 4.0));
+/// // How far an exact computation could be from it.
+/// assert!(first.bound.is_some_and(|bound| bound.time < 1e3 * f64::EPSILON));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Event {
     /// When, in s from the start.

@@ -70,6 +70,7 @@ pub use nalgebra;
 pub mod error;
 pub mod tolerance;
 pub mod power;
+pub mod rotation;
 pub mod counters;
 pub mod body;
 pub mod effects;

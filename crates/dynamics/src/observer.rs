@@ -4,7 +4,11 @@ use crate::body::State;
 use crate::effects::spin_decay::SpinDecay;
 use crate::events::{Event, Motion};
 use crate::integrators::Step;
-use nalgebra::Vector3;
+use crate::rotation::rotation;
+use nalgebra::{UnitQuaternion, Vector3};
+
+/// More steps than this do not follow an axis any better than the eye does.
+const MOST_STEPS: f64 = 4096.0;
 
 /// A stretch of motion without an event inside.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,12 +47,47 @@ impl Turning {
             None => self.from + (self.to - self.from) * (seconds / whole).clamp(0.0, 1.0),
         }
     }
+
+    /// How the ball has turned after `seconds` of the `whole` (s), in the axes of the scene.
+    ///
+    /// Exact where the axis stands still, as it does in flight and where a ball slips or rolls straight on. An axis that turns evenly is followed in
+    /// steps of less than half a radian by the first two terms of Magnus's series (W. Magnus, *On the exponential solution of differential
+    /// equations for a linear operator*, 1954): the mean of the angular velocity, and (end x start) t^2 / 12.
+    pub fn rotation(&self, seconds: f64, whole: f64) -> UnitQuaternion<f64> {
+        if let Some(decay) = self.decay {
+            return rotation(&(self.from * decay.lasting(seconds)));
+        }
+        let now = self.at(seconds, whole);
+        let steps = Self::steps(&self.from, &now, seconds);
+        let step = seconds / f64::from(steps);
+        let at = |k: u32| self.from + (now - self.from) * (f64::from(k) / f64::from(steps));
+        (0..steps).fold(UnitQuaternion::identity(), |turned, k| {
+            let (before, after) = (at(k), at(k + 1));
+            let turn = (before + after) * (0.5 * step) + after.cross(&before) * (step * step / 12.0);
+            rotation(&turn) * turned
+        })
+    }
+
+    /// In how many steps an axis is followed that turns from one angular velocity to the other: one where it does not.
+    fn steps(from: &Vector3<f64>, to: &Vector3<f64>, seconds: f64) -> u32 {
+        let turn = from.norm().max(to.norm()) * seconds;
+        let twist = from.cross(to).norm() * seconds * seconds;
+        // Of a twist that is small, the series leaves its share of the square of the turn.
+        (8.0 * twist.sqrt()).min(2.0 * turn).ceil().clamp(1.0, MOST_STEPS) as u32
+    }
 }
 
 impl Segment {
     /// The angular velocity in rad/s at `time`, if the scene calls for it.
     pub fn spin_at(&self, time: f64) -> Option<Vector3<f64>> {
         self.turning.map(|turning| turning.at(time - self.time, self.end - self.time))
+    }
+
+    /// How the ball has turned from the start of the segment to `time`, which is brought into it; not at all if the scene does not call for it.
+    pub fn rotation_at(&self, time: f64) -> UnitQuaternion<f64> {
+        let whole = self.end - self.time;
+        let seconds = (time - self.time).clamp(0.0, whole);
+        self.turning.map_or_else(UnitQuaternion::identity, |turning| turning.rotation(seconds, whole))
     }
 
     /// The state at `time`, which is brought into the segment.
@@ -58,6 +97,51 @@ impl Segment {
 }
 
 /// Watches one ball.
+///
+/// ```
+/// # use carom_dynamics::body::Ball;
+/// # use carom_dynamics::effects::{friction::Friction, gravity::Gravity, restitution::Restitution};
+/// # use carom_dynamics::scene::Scene;
+/// # use carom_dynamics::surface::{Material, Shape, Surface};
+/// # use carom_geometry::plane::Plane;
+/// # use nalgebra::{Point3, Vector3};
+/// # let floor = Plane::from_point_normal(Point3::origin(), Vector3::z())?;
+/// # let material = Material { restitution: Restitution::new(0.5)?, friction: Friction::None };
+/// # let scene = Scene {
+/// #     gravity: Some(Gravity::uniform(Vector3::new(0.0, 0.0, -8.0))?),
+/// #     surfaces: vec![Surface { name: "floor".into(), material, shape: Shape::Plane(floor) }],
+/// #     balls: vec![Ball::new(Point3::new(0.0, 0.0, 4.0), Vector3::zeros(), 0.0, None)?],
+/// #     ..Scene::lasting(3.0)
+/// # };
+/// use carom_dynamics::events::{Event, EventKind};
+/// use carom_dynamics::observer::{Observer, Segment};
+/// use carom_dynamics::plan::Plan;
+/// use carom_dynamics::simulate::simulate;
+///
+/// /// Counts the impacts and remembers the hardest.
+/// #[derive(Default)]
+/// struct Impacts {
+///     count: usize,
+///     hardest: f64,
+/// }
+///
+/// impl Observer for Impacts {
+///     fn event(&mut self, event: &Event) {
+///         if event.kind == EventKind::Impact {
+///             self.count += 1;
+///             self.hardest = self.hardest.max(-event.normal.dot(&event.velocity_in));
+///         }
+///     }
+///
+///     fn segment(&mut self, _: &Segment) {}
+/// }
+///
+/// let plan = Plan::new(&scene)?;
+/// let mut impacts = Impacts::default();
+/// simulate(&plan, &plan.balls()[0], &mut impacts);
+/// assert!(impacts.count > 10 && impacts.hardest == 8.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub trait Observer {
     /// Something happened.
     fn event(&mut self, event: &Event);
@@ -101,6 +185,34 @@ impl<A: Observer> Observer for Option<A> {
 }
 
 /// The whole run of a ball: its events and its motion.
+///
+/// ```
+/// # use carom_dynamics::body::Ball;
+/// # use carom_dynamics::effects::{friction::Friction, gravity::Gravity, restitution::Restitution};
+/// # use carom_dynamics::scene::Scene;
+/// # use carom_dynamics::surface::{Material, Shape, Surface};
+/// # use carom_geometry::plane::Plane;
+/// # use nalgebra::{Point3, Vector3};
+/// # let floor = Plane::from_point_normal(Point3::origin(), Vector3::z())?;
+/// # let material = Material { restitution: Restitution::new(0.5)?, friction: Friction::None };
+/// # let scene = Scene {
+/// #     gravity: Some(Gravity::uniform(Vector3::new(0.0, 0.0, -8.0))?),
+/// #     surfaces: vec![Surface { name: "floor".into(), material, shape: Shape::Plane(floor) }],
+/// #     balls: vec![Ball::new(Point3::new(0.0, 0.0, 4.0), Vector3::zeros(), 0.0, None)?],
+/// #     ..Scene::lasting(3.0)
+/// # };
+/// use carom_dynamics::observer::Trajectory;
+/// use carom_dynamics::plan::Plan;
+/// use carom_dynamics::simulate::simulate;
+///
+/// let plan = Plan::new(&scene)?;
+/// let mut run = Trajectory::default();
+/// simulate(&plan, &plan.balls()[0], &mut run);
+/// // Any moment of it is the one that was computed, and no frame.
+/// let (state, _) = run.at(0.5).ok_or("within the run")?;
+/// assert_eq!((state.position.z, state.velocity.z), (3.0, -4.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Trajectory {
     /// The events, in order of time.
@@ -126,6 +238,17 @@ impl Trajectory {
         let segment = self.segments.get(after.checked_sub(1)?)?;
         (time <= segment.end).then(|| (segment.at(time), segment.motion))
     }
+
+    /// How the ball has turned from its start to the start of each segment; see [`Segment::rotation_at`] for what comes after that.
+    pub fn orientations(&self) -> Vec<UnitQuaternion<f64>> {
+        let turned = |orientation: &mut UnitQuaternion<f64>, segment: &Segment| {
+            let before = *orientation;
+            // Products of many rotations drift off unit length by their rounding.
+            *orientation = UnitQuaternion::new_normalize((segment.rotation_at(segment.end) * before).into_inner());
+            Some(before)
+        };
+        self.segments.iter().scan(UnitQuaternion::identity(), turned).collect()
+    }
 }
 
 /// A ball at the time of a frame.
@@ -142,6 +265,33 @@ pub struct Frame {
 }
 
 /// Samples the motion at t = k / fps. Frames are read off the stored paths and never change the run.
+///
+/// ```
+/// # use carom_dynamics::body::Ball;
+/// # use carom_dynamics::effects::{friction::Friction, gravity::Gravity, restitution::Restitution};
+/// # use carom_dynamics::scene::Scene;
+/// # use carom_dynamics::surface::{Material, Shape, Surface};
+/// # use carom_geometry::plane::Plane;
+/// # use nalgebra::{Point3, Vector3};
+/// # let floor = Plane::from_point_normal(Point3::origin(), Vector3::z())?;
+/// # let material = Material { restitution: Restitution::new(0.5)?, friction: Friction::None };
+/// # let scene = Scene {
+/// #     gravity: Some(Gravity::uniform(Vector3::new(0.0, 0.0, -8.0))?),
+/// #     surfaces: vec![Surface { name: "floor".into(), material, shape: Shape::Plane(floor) }],
+/// #     balls: vec![Ball::new(Point3::new(0.0, 0.0, 4.0), Vector3::zeros(), 0.0, None)?],
+/// #     ..Scene::lasting(3.0)
+/// # };
+/// use carom_dynamics::observer::FrameSampler;
+/// use carom_dynamics::plan::Plan;
+/// use carom_dynamics::simulate::simulate;
+///
+/// let plan = Plan::new(&scene)?;
+/// let mut sampler = FrameSampler::new(2.0, plan.duration());
+/// simulate(&plan, &plan.balls()[0], &mut sampler);
+/// let frames = sampler.frames();
+/// assert_eq!((frames.len(), frames[1].time, frames[1].state.position.z), (7, 0.5, 3.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrameSampler {
     fps: f64,
@@ -176,5 +326,33 @@ impl Observer for FrameSampler {
             let (state, spin) = (segment.at(time), segment.spin_at(time));
             self.frames.push(Frame { time, state, motion: segment.motion, spin });
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_axis_that_turns_is_followed() {
+        let (from, to) = (Vector3::new(-60.0, -60.0, 0.0), Vector3::new(-17.0, 18.0, 5.0));
+        let turning = Turning { from, to, decay: None };
+        // By brute force: a million steps about the axis in the middle of each.
+        const STEPS: u32 = 1 << 20;
+        let step = 0.5 / f64::from(STEPS);
+        let turn = |q, k: u32| rotation(&(turning.at((f64::from(k) + 0.5) * step, 0.5) * step)) * q;
+        let right = (0..STEPS).fold(UnitQuaternion::identity(), turn);
+        assert!(turning.rotation(0.5, 0.5).angle_to(&right) < 1e-3);
+        // In two parts it is the same.
+        let rest = Turning { from: turning.at(0.2, 0.5), ..turning };
+        let parts = rest.rotation(0.3, 0.3) * turning.rotation(0.2, 0.5);
+        assert!(parts.angle_to(&right) < 1e-3);
+    }
+
+    #[test]
+    fn an_axis_that_stands_still_is_exact() {
+        let turning = Turning { from: Vector3::new(0.0, 10.0, 0.0), to: Vector3::new(0.0, 30.0, 0.0), decay: None };
+        let right = rotation(&Vector3::new(0.0, 40.0, 0.0));
+        assert!(turning.rotation(2.0, 2.0).angle_to(&right) < 1e-13);
     }
 }

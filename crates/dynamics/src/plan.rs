@@ -25,6 +25,34 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 /// A scene made ready: what is off is not in it.
+///
+/// ```
+/// # use carom_dynamics::body::Ball;
+/// # use carom_dynamics::effects::{friction::Friction, gravity::Gravity, restitution::Restitution};
+/// # use carom_dynamics::scene::Scene;
+/// # use carom_dynamics::surface::{Material, Shape, Surface};
+/// # use carom_geometry::plane::Plane;
+/// # use nalgebra::{Point3, Vector3};
+/// # let floor = Plane::from_point_normal(Point3::origin(), Vector3::z())?;
+/// # let material = Material { restitution: Restitution::new(0.5)?, friction: Friction::None };
+/// # let scene = Scene {
+/// #     gravity: Some(Gravity::uniform(Vector3::new(0.0, 0.0, -8.0))?),
+/// #     surfaces: vec![Surface { name: "floor".into(), material, shape: Shape::Plane(floor) }],
+/// #     balls: vec![Ball::new(Point3::new(0.0, 0.0, 4.0), Vector3::zeros(), 0.0, None)?],
+/// #     ..Scene::lasting(3.0)
+/// # };
+/// use carom_dynamics::error::SceneError;
+/// use carom_dynamics::plan::Plan;
+/// use carom_dynamics::scene::Method;
+///
+/// // `scene` has gravity and a floor, and says nothing of the method.
+/// let plan = Plan::new(&scene)?;
+/// assert_eq!(plan.method(), Method::Exact);
+/// // Everything that a scene can get wrong is found here.
+/// let empty = Scene { balls: vec![], ..scene };
+/// assert!(matches!(Plan::new(&empty), Err(SceneError::NoBalls)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Plan {
     pub(crate) duration: f64,

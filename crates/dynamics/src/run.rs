@@ -31,6 +31,37 @@ pub struct ThreadsError {
 /// Simulates every ball of `plan` on `threads` threads (all cores if none). `make` gives the observer of a ball by its
 /// index; `sink` takes each back with the ball's outcome, on the calling thread and in the order of the balls, and may break
 /// off. No more than some hundred balls a thread are in memory at once.
+///
+/// ```
+/// # use carom_dynamics::body::Ball;
+/// # use carom_dynamics::effects::{friction::Friction, gravity::Gravity, restitution::Restitution};
+/// # use carom_dynamics::scene::Scene;
+/// # use carom_dynamics::surface::{Material, Shape, Surface};
+/// # use carom_geometry::plane::Plane;
+/// # use nalgebra::{Point3, Vector3};
+/// # let floor = Plane::from_point_normal(Point3::origin(), Vector3::z())?;
+/// # let material = Material { restitution: Restitution::new(0.5)?, friction: Friction::None };
+/// # let scene = Scene {
+/// #     gravity: Some(Gravity::uniform(Vector3::new(0.0, 0.0, -8.0))?),
+/// #     surfaces: vec![Surface { name: "floor".into(), material, shape: Shape::Plane(floor) }],
+/// #     balls: vec![Ball::new(Point3::new(0.0, 0.0, 4.0), Vector3::zeros(), 0.0, None)?],
+/// #     ..Scene::lasting(3.0)
+/// # };
+/// use carom_dynamics::observer::FrameSampler;
+/// use carom_dynamics::plan::Plan;
+/// use carom_dynamics::run::run_balls;
+/// use std::ops::ControlFlow;
+///
+/// // Four frames a second of every ball, on all cores, in the order of the balls.
+/// let plan = Plan::new(&scene)?;
+/// let mut heights = Vec::new();
+/// run_balls(&plan, None, |_| FrameSampler::new(4.0, plan.duration()), |_ball, sampler, _outcome| {
+///     heights.extend(sampler.frames().iter().map(|frame| frame.state.position.z));
+///     ControlFlow::Continue(())
+/// })?;
+/// assert_eq!(heights[..5], [4.0, 3.75, 3.0, 1.75, 0.0]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn run_balls<O: Observer + Send>(
     plan: &Plan,
     threads: Option<usize>,

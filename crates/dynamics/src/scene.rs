@@ -12,6 +12,26 @@ use crate::tolerance::RestThresholds;
 use nalgebra::Vector3;
 
 /// How flights are computed.
+///
+/// ```
+/// use carom_dynamics::body::Ball;
+/// use carom_dynamics::effects::gravity::Gravity;
+/// use carom_dynamics::plan::Plan;
+/// use carom_dynamics::scene::{Method, Scene};
+/// use carom_dynamics::simulate::simulate;
+/// use nalgebra::{Point3, Vector3};
+///
+/// // The chapter's Euler method falls too far by g h t / 2, whatever else is right.
+/// let fall = |method| {
+///     let gravity = Some(Gravity::uniform(Vector3::new(0.0, 0.0, -8.0))?);
+///     let balls = vec![Ball::new(Point3::origin(), Vector3::zeros(), 0.0, None)?];
+///     let plan = Plan::new(&Scene { gravity, balls, method: Some(method), ..Scene::lasting(1.0) })?;
+///     Ok::<f64, Box<dyn std::error::Error>>(simulate(&plan, &plan.balls()[0], &mut ()).state.position.z)
+/// };
+/// assert_eq!(fall(Method::Exact)?, -4.0);
+/// assert_eq!(fall(Method::Euler { step: 0.125 })?, -4.0 + 8.0 * 0.125 / 2.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Method {
     /// Exact parabolas and straight lines; only under constant acceleration.
@@ -39,6 +59,29 @@ pub enum Method {
 }
 
 /// A scene: plain data, checked when a plan is made of it.
+///
+/// ```
+/// use carom_dynamics::body::Ball;
+/// use carom_dynamics::effects::{drag::Drag, friction::Friction, gravity::Gravity, restitution::Restitution};
+/// use carom_dynamics::scene::{Method, Scene};
+/// use carom_dynamics::surface::{Material, Shape, Surface};
+/// use carom_geometry::plane::Plane;
+/// use nalgebra::{Point3, Vector3};
+///
+/// let floor = Plane::from_point_normal(Point3::origin(), Vector3::z())?;
+/// let clay = Material { restitution: Restitution::new(0.75)?, friction: Friction::coulomb(0.6)? };
+/// let scene = Scene {
+///     gravity: Some(Gravity::uniform(Vector3::new(0.0, 0.0, -9.81))?),
+///     drag: Some(Drag::linear(0.05)?.in_wind(Vector3::new(2.0, 0.0, 0.0))?),
+///     surfaces: vec![Surface { name: "floor".into(), material: clay, shape: Shape::Plane(floor) }],
+///     balls: vec![Ball::new(Point3::new(0.0, 0.0, 1.0), Vector3::x(), 0.033, Some(0.058))?],
+///     // If not given: exact where the acceleration is constant, else adaptive.
+///     method: Some(Method::Rk4 { step: 0.01 }),
+///     ..Scene::lasting(3.0)
+/// };
+/// assert!(!scene.spins());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Scene {
     /// For how long to simulate, in s, > 0.

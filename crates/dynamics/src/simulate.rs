@@ -32,6 +32,37 @@ use nalgebra::Vector3;
 use spin::Slip;
 
 /// Simulates one ball of `plan` to the end and shows it to `observer`.
+///
+/// ```
+/// # use carom_dynamics::body::Ball;
+/// # use carom_dynamics::effects::{friction::Friction, gravity::Gravity, restitution::Restitution};
+/// # use carom_dynamics::scene::Scene;
+/// # use carom_dynamics::surface::{Material, Shape, Surface};
+/// # use carom_geometry::plane::Plane;
+/// # use nalgebra::{Point3, Vector3};
+/// # let floor = Plane::from_point_normal(Point3::origin(), Vector3::z())?;
+/// # let material = Material { restitution: Restitution::new(0.5)?, friction: Friction::None };
+/// # let scene = Scene {
+/// #     gravity: Some(Gravity::uniform(Vector3::new(0.0, 0.0, -8.0))?),
+/// #     surfaces: vec![Surface { name: "floor".into(), material, shape: Shape::Plane(floor) }],
+/// #     balls: vec![Ball::new(Point3::new(0.0, 0.0, 4.0), Vector3::zeros(), 0.0, None)?],
+/// #     ..Scene::lasting(3.0)
+/// # };
+/// use carom_dynamics::events::{Ending, EventKind};
+/// use carom_dynamics::observer::Trajectory;
+/// use carom_dynamics::plan::Plan;
+/// use carom_dynamics::simulate::simulate;
+///
+/// // A drop from 4 m under g = 8 m/s^2, restitution 1/2, for 3 s.
+/// let plan = Plan::new(&scene)?;
+/// let mut run = Trajectory::default();
+/// let outcome = simulate(&plan, &plan.balls()[0], &mut run);
+/// assert_eq!((run.events[0].time, run.events[0].kind), (1.0, EventKind::Impact));
+/// // After 1 s and infinitely many bounces in 2 s it rests.
+/// assert_eq!(run.events.last().map(|event| event.kind), Some(EventKind::Rest));
+/// assert_eq!((outcome.ending, outcome.state.velocity), (Ending::Completed, Vector3::zeros()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn simulate(plan: &Plan, ball: &Ball, observer: &mut impl Observer) -> Outcome {
     let forces = plan.forces(ball);
     let surfaces = plan.surfaces_for(ball);

@@ -8,6 +8,16 @@ use carom_geometry::polygon::Polygon;
 use std::sync::Arc;
 
 /// How a surface answers an impact.
+///
+/// ```
+/// use carom_dynamics::effects::{friction::Friction, restitution::Restitution};
+/// use carom_dynamics::surface::Material;
+///
+/// let court = Material { restitution: Restitution::new(0.75)?, friction: Friction::coulomb(0.6)? };
+/// assert_eq!(court.restitution.coefficient(), 0.75);
+/// assert!(Restitution::new(1.2).is_err(), "nothing rebounds faster than it came");
+/// # Ok::<(), carom_dynamics::error::ValueError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Material {
     /// Restitution.
@@ -17,6 +27,22 @@ pub struct Material {
 }
 
 /// The shape of a surface; both of its sides collide.
+///
+/// ```
+/// use carom_dynamics::surface::Shape;
+/// use carom_geometry::{mesh::Mesh, plane::Plane, polygon::Polygon};
+/// use nalgebra::{Point3, Vector3};
+/// use std::sync::Arc;
+///
+/// let floor = Shape::Plane(Plane::from_point_normal(Point3::origin(), Vector3::z())?);
+/// let corners = vec![Point3::origin(), Point3::new(2.0, 0.0, 0.0), Point3::new(0.0, 2.0, 1.0)];
+/// let ramp = Shape::Polygon(Polygon::new(corners.clone())?);
+/// // A mesh may be shared by many scenes.
+/// let mesh = Arc::new(Mesh::new(corners, vec![[0, 1, 2]])?);
+/// let hill = Shape::Mesh(Arc::clone(&mesh));
+/// # let _ = (floor, ramp, hill);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub enum Shape {
     /// An infinite plane.
@@ -28,6 +54,19 @@ pub enum Shape {
 }
 
 /// A fixed surface with a name, by which events refer to it.
+///
+/// ```
+/// use carom_dynamics::effects::{friction::Friction, restitution::Restitution};
+/// use carom_dynamics::surface::{Material, Shape, Surface};
+/// use carom_geometry::plane::Plane;
+/// use nalgebra::{Point3, Vector3};
+///
+/// let wall = Plane::from_point_normal(Point3::new(3.0, 0.0, 0.0), -Vector3::x())?;
+/// let plaster = Material { restitution: Restitution::new(0.6)?, friction: Friction::None };
+/// let surface = Surface { name: "wall".into(), material: plaster, shape: Shape::Plane(wall) };
+/// assert_eq!(surface.name, "wall");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Surface {
     /// Its name in events.

@@ -151,7 +151,7 @@ pub const FLIGHT_TOLERANCE: f64 = 1.0e-9;
 /// The least tolerance the adaptive pair can be asked for: below it the error estimate is rounding.
 pub const LEAST_TOLERANCE: f64 = 1.0e-15;
 
-/// The tolerance of the adaptive pair where it stands for a reference that an effect does not have.
+/// The tolerance of the adaptive pair where it is to follow a flight as well as f64 lets it.
 pub const FINEST_TOLERANCE: f64 = 1.0e-14;
 
 /// What a tolerance must be, in words: from [`LEAST_TOLERANCE`] to 1.

@@ -6,6 +6,15 @@ use nalgebra::{Point3, Vector3};
 ///
 /// Its corners are those of the points it was made of, without rounding, so that [`contains`](Self::contains) and
 /// [`intersects`](Self::intersects) are exact. Only [`inflate`](Self::inflate) rounds, and it rounds outwards.
+///
+/// ```
+/// use carom_geometry::bounds::Aabb;
+/// use nalgebra::{Point3, Vector3};
+///
+/// let bounds = Aabb::of_points(&[Point3::origin(), Point3::new(2.0, 4.0, 6.0)]);
+/// assert_eq!((bounds.extent(), bounds.centre()), (Vector3::new(2.0, 4.0, 6.0), Point3::new(1.0, 2.0, 3.0)));
+/// assert!(bounds.inflate(1.0).contains(&Point3::new(-1.0, 0.0, 0.0)));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Aabb {
     min: Point3<f64>,

@@ -19,6 +19,19 @@ pub struct Clearance {
 }
 
 /// Where a clearance is first <= 0 and falling.
+///
+/// ```
+/// use carom_geometry::clearance::Entry;
+/// use carom_geometry::path::Path;
+/// use nalgebra::{Point3, Vector3};
+///
+/// // 2 m above a floor, downwards by 4 m: there at the half of the way. Upwards: never.
+/// let floor = Vector3::z();
+/// let falling = Path::line(Point3::new(0.0, 0.0, 2.0), -4.0 * floor);
+/// assert_eq!(falling.clearance(2.0, &floor).first_entry(0.0, 1.0), Entry::At { f: 0.5, rate: -4.0 });
+/// let rising = Path::line(Point3::new(0.0, 0.0, 2.0), 4.0 * floor);
+/// assert_eq!(rising.clearance(2.0, &floor).first_entry(0.0, 1.0), Entry::Never);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Entry {
     /// Nowhere in the interval.

@@ -86,6 +86,21 @@ impl MovingBall<'_> {
 }
 
 /// How the search for a contact ended.
+///
+/// ```
+/// use carom_geometry::contact::{Contact, MovingBall, first_contact};
+/// use carom_geometry::path::Path;
+/// use carom_geometry::triangle::Feature;
+/// use nalgebra::{Point3, Vector3};
+///
+/// let triangle = [Point3::origin(), Point3::new(4.0, 0.0, 0.0), Point3::new(0.0, 4.0, 0.0)];
+/// let falling = |x: f64| Path::line(Point3::new(x, 1.0, 3.0), Vector3::new(0.0, 0.0, -4.0));
+/// let contact = |path: &Path| first_contact(&MovingBall { path, radius: 1.0, holds: &[] }, &triangle, 0.0, 1.0, &mut 0);
+/// // Onto the face; past the edge from corner 2 to corner 0, which is nearer than the radius; and past all of it.
+/// assert_eq!(contact(&falling(1.0)), Contact::At { f: 0.5, feature: Feature::Face });
+/// assert!(matches!(contact(&falling(-0.5)), Contact::At { feature: Feature::Edge(2), .. }));
+/// assert_eq!(contact(&falling(-1.5)), Contact::Miss);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Contact {
     /// No contact in [0, to]: certified by a plane.

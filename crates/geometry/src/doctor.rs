@@ -20,6 +20,17 @@ pub enum Severity {
 
 /// Something about a mesh that its owner should know. Faces and vertices go by their numbers from 0; side i of a face
 /// runs from its corner i to its corner i + 1.
+///
+/// ```
+/// use carom_geometry::doctor::{Finding, Severity, diagnose};
+/// use nalgebra::Point3;
+///
+/// let vertices = [Point3::origin(), Point3::new(1.0, 0.0, 0.0), Point3::new(0.0, 1.0, 0.0), Point3::new(2.0, 0.0, 0.0)];
+/// let findings = diagnose(&vertices, &[[0, 1, 2], [0, 1, 3]]);
+/// // The second face has its corners on one line.
+/// assert!(findings.contains(&Finding::ZeroArea { face: 1 }));
+/// assert!(findings.iter().all(|finding| finding.severity() < Severity::Error), "it is a mesh all the same");
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Finding {

@@ -4,6 +4,16 @@ use crate::predicates::{Sign, orient2d};
 use nalgebra::Point2;
 
 /// Where a point lies with respect to a polygon.
+///
+/// ```
+/// use carom_geometry::inside::{Location, locate_simple};
+/// use nalgebra::Point2;
+///
+/// let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(Point2::from);
+/// assert_eq!(locate_simple(&square, &Point2::new(0.5, 0.5)), Location::Inside);
+/// assert_eq!(locate_simple(&square, &Point2::new(1.0, 0.5)), Location::OnEdge(1));
+/// assert_eq!(locate_simple(&square, &Point2::new(1.0, 1.0)), Location::OnVertex(2));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Location {
     /// Strictly inside.

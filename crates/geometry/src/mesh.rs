@@ -108,6 +108,32 @@ pub struct Edge {
 /// [`diagnose`](crate::doctor::diagnose).
 ///
 /// Takes about 100 bytes a face beside the vertices.
+///
+/// ```
+/// use carom_geometry::contact::MovingBall;
+/// use carom_geometry::mesh::Mesh;
+/// use carom_geometry::path::Path;
+/// use carom_geometry::rounding::SEGMENT_FRACTION_BOUND;
+/// use carom_geometry::sweep::Work;
+/// use nalgebra::{Point3, Vector3};
+///
+/// // A tetrahedron: four vertices, four faces that turn counter-clockwise seen from outside.
+/// let vertices = vec![Point3::origin(), Point3::new(1.0, 0.0, 0.0), Point3::new(0.0, 1.0, 0.0), Point3::new(0.0, 0.0, 1.0)];
+/// let mesh = Mesh::new(vertices, vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])?;
+/// assert!(mesh.edges().all(|edge| edge.count == 2), "it is closed");
+///
+/// // What a segment from below meets first, and where: never late, early by the bound at most. The work says what that took.
+/// let mut work = Work::default();
+/// let pierced = mesh.first_pierced(&Point3::new(0.25, 0.25, -1.0), &Point3::new(0.25, 0.25, 1.0), &mut work);
+/// assert!(pierced.is_some_and(|hit| hit.face == 0 && (0.5 - SEGMENT_FRACTION_BOUND..=0.5).contains(&hit.f)));
+///
+/// // When a ball of radius 1/4 on the same way first touches it.
+/// let path = Path::line(Point3::new(0.25, 0.25, -1.0), Vector3::new(0.0, 0.0, 2.0));
+/// let ball = MovingBall { path: &path, radius: 0.25, holds: &[] };
+/// let contact = mesh.first_contact(&ball, 1.0, |_| 0.0, &mut work);
+/// assert!(contact.is_some_and(|contact| (contact.f - 0.375).abs() < f64::EPSILON));
+/// # Ok::<(), carom_geometry::mesh::MeshError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Mesh {
     vertices: Vec<Point3<f64>>,

@@ -9,6 +9,18 @@ use crate::clearance::{Clearance, MAX_DEGREE};
 use nalgebra::{Point3, Vector3};
 
 /// A path p(f) = start + t1 f + t2 f^2 + t3 f^3 + t4 f^4, f in [0, 1].
+///
+/// ```
+/// use carom_geometry::path::Path;
+/// use nalgebra::{Point3, Vector3};
+///
+/// // A second of flight under g = 10 m/s^2, thrown upwards at 5 m/s: the terms of f and of f^2, which is g / 2.
+/// let path = Path::parabola(Point3::origin(), Vector3::new(3.0, 0.0, 5.0), Vector3::new(0.0, 0.0, -5.0));
+/// assert_eq!(path.at(0.5), Point3::new(1.5, 0.0, 1.25));
+/// assert_eq!(path.derivative(0.5).z, 0.0);
+/// // The box of its way, with the rounding of every point on it.
+/// assert!(path.bounds(0.0, 1.0).contains(&path.at(0.3)));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Path {
     start: Point3<f64>,

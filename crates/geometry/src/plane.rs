@@ -28,6 +28,20 @@ impl Side {
 /// An infinite plane: the points x with n.(x - p) = 0 (R4), n of length 1 to rounding.
 ///
 /// The plane *is* the stored p and n; every answer, exact or bounded, is about them.
+///
+/// ```
+/// use carom_geometry::plane::{Plane, Side};
+/// use nalgebra::{Point3, Vector3};
+///
+/// // From a point and a normal of any length; also from A, B, C, D, or through three points.
+/// let floor = Plane::from_point_normal(Point3::origin(), Vector3::new(0.0, 0.0, 5.0))?;
+/// assert_eq!(floor.signed_distance(&Point3::new(7.0, 0.0, -2.0)), -2.0);
+/// // Sides are exact, however close the point is.
+/// assert_eq!(floor.side_of(&Point3::new(1.0, 1.0, f64::MIN_POSITIVE)), Some(Side::Positive));
+/// // The room that a ball has: the distance on its side, less its radius.
+/// assert_eq!(floor.clearance(&Point3::new(0.0, 0.0, 2.0), 0.5, Side::Positive), 1.5);
+/// # Ok::<(), carom_geometry::error::PlaneError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Plane {
     point: Point3<f64>,

@@ -12,6 +12,24 @@ use nalgebra::{Point2, Point3, UnitVector3};
 
 /// A simple polygon: at least three vertices in order around it, in one plane to rounding, whose edges meet only at the vertices between
 /// them. Edge i runs from vertex i to the next.
+///
+/// ```
+/// use carom_geometry::inside::Location;
+/// use carom_geometry::polygon::Polygon;
+/// use nalgebra::Point3;
+///
+/// let corners = |xy: &[(f64, f64)]| xy.iter().map(|&(x, y)| Point3::new(x, y, 1.0)).collect();
+/// let l = Polygon::new(corners(&[(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0)]))?;
+/// assert_eq!((l.area(), l.is_convex(), l.reflex_vertices()), (3.0, false, &[3][..]));
+/// assert_eq!(l.locate(&Point3::new(0.5, 1.5, 1.0)), Location::Inside);
+/// assert_eq!(l.locate(&Point3::new(1.5, 1.5, 1.0)), Location::Outside);
+/// assert_eq!(l.locate(&Point3::new(1.5, 0.0, 1.0)), Location::OnEdge(0));
+///
+/// // What is no simple polygon is refused, with what is wrong and where.
+/// let bow_tie = Polygon::new(corners(&[(0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.0, 1.0)]));
+/// assert!(bow_tie.is_err_and(|error| error.to_string().contains("edge")));
+/// # Ok::<(), carom_geometry::error::PolygonError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Polygon {
     vertices: Vec<Point3<f64>>,

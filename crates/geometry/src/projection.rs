@@ -3,6 +3,16 @@
 use nalgebra::{Point2, Point3, Vector3};
 
 /// The axis along which a polygon is seen at its largest.
+///
+/// ```
+/// use carom_geometry::projection::DominantAxis;
+/// use nalgebra::{Point2, Point3, Vector3};
+///
+/// // A plane that faces along y is looked at from there: what is left of (x, y, z) is (z, x).
+/// let axis = DominantAxis::of(&Vector3::new(0.1, -0.9, 0.3));
+/// assert_eq!(axis, DominantAxis::Y);
+/// assert_eq!(axis.project(&Point3::new(1.0, 2.0, 3.0)), Point2::new(3.0, 1.0));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum DominantAxis {
     /// Drop x, keep (y, z).

@@ -7,6 +7,19 @@ use crate::rounding::{SEGMENT_FRACTION_BOUND, UNIT_ROUNDOFF};
 use nalgebra::Point3;
 
 /// Whether a segment meets a triangle, and where first.
+///
+/// ```
+/// use carom_geometry::segment::{SegmentHit, segment_hits_triangle};
+/// use carom_geometry::triangle::Feature;
+/// use nalgebra::Point3;
+///
+/// let triangle = [Point3::origin(), Point3::new(4.0, 0.0, 0.0), Point3::new(0.0, 4.0, 0.0)];
+/// let down = |x, y| segment_hits_triangle(&Point3::new(x, y, 1.0), &Point3::new(x, y, -1.0), &triangle);
+/// assert!(matches!(down(1.0, 1.0), SegmentHit::Hit { feature: Feature::Face, coplanar: false, .. }));
+/// assert!(matches!(down(1.0, 0.0), SegmentHit::Hit { feature: Feature::Edge(0), coplanar: false, .. }));
+/// // Beside the edge by the least that can be told is beside it.
+/// assert_eq!(down(1.0, -f64::MIN_POSITIVE), SegmentHit::Miss);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SegmentHit {
     /// They have no point in common.

@@ -8,6 +8,20 @@ use crate::plane::Plane;
 use nalgebra::{Point3, UnitVector3};
 
 /// A triangle with an area: three finite vertices that do not lie on one line.
+///
+/// ```
+/// use carom_geometry::triangle::{Feature, Triangle, closest_point};
+/// use nalgebra::Point3;
+///
+/// let corners = [Point3::origin(), Point3::new(4.0, 0.0, 0.0), Point3::new(0.0, 4.0, 0.0)];
+/// let triangle = Triangle::new(corners)?;
+/// assert_eq!(triangle.area(), 8.0);
+/// assert_eq!(triangle.barycentric(&Point3::new(1.0, 1.0, 0.0)), [0.5, 0.25, 0.25]);
+/// // What of it is nearest to a point: here edge 1, from corner 1 to corner 2.
+/// let nearest = closest_point(&corners, &Point3::new(3.0, 3.0, 1.0));
+/// assert_eq!((nearest.point, nearest.feature), (Point3::new(2.0, 2.0, 0.0), Feature::Edge(1)));
+/// # Ok::<(), carom_geometry::error::TriangleError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Triangle {
     vertices: [Point3<f64>; 3],

@@ -3,7 +3,7 @@
 use crate::cli::ExportArgs;
 use crate::error::AppError;
 use crate::model;
-use crate::output::target::{Target, is_stdout};
+use crate::output::target::{Target, is_stdout, require_extension};
 use crate::replay::Replay;
 use crate::terminal::say;
 
@@ -12,11 +12,7 @@ const KEY_LIMIT: f64 = 1e8;
 
 /// Simulates the scene and writes the model.
 pub fn export(args: &ExportArgs) -> Result<(), AppError> {
-    let extension = args.output.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
-    if !is_stdout(&args.output) && extension.as_deref() != Some("glb") {
-        let path = args.output.display();
-        return Err(AppError::Usage(format!("{path}: the form follows from the extension, which is .glb")));
-    }
+    require_extension(&args.output, "glb")?;
     let mut out = Target::open(&args.output)?;
     let replay = Replay::of(&args.input.scene, &args.input.how)?;
     if let model::Keys::Frames { fps } = args.keys

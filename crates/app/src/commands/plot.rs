@@ -3,7 +3,7 @@
 use crate::cli::{PlotArgs, Quantity};
 use crate::curves::{self, Curve, Sample};
 use crate::error::AppError;
-use crate::output::target::Target;
+use crate::output::target::{Target, is_stdout, require_extension};
 use crate::plot::{Axis, Chart, Drawn, Series};
 use crate::replay::Replay;
 use crate::scene;
@@ -21,6 +21,7 @@ const AFTERWARDS: f64 = 0.05;
 
 /// Draws the chart.
 pub fn plot(args: &PlotArgs) -> Result<(), AppError> {
+    require_extension(&args.output, "svg")?;
     let mut out = Target::open(&args.output)?;
     let (curves, conclusion) = if scene::is_scene(&args.file) {
         let replay = Replay::of(&args.file, &args.how)?;
@@ -35,6 +36,9 @@ pub fn plot(args: &PlotArgs) -> Result<(), AppError> {
     let chosen = choose(curves, args)?;
     out.write(chart(&chosen, args).svg().as_bytes())?;
     out.finish()?;
+    if !args.how.quiet && !is_stdout(&args.output) {
+        say(&format!("chart     {}, for any browser", args.output.display()));
+    }
     conclusion
 }
 

@@ -2,13 +2,14 @@
 
 use crate::cli::ViewArgs;
 use crate::error::AppError;
-use crate::output::target::{Target, is_stdout};
+use crate::output::target::{Target, is_stdout, require_extension};
 use crate::replay::Replay;
 use crate::terminal::say;
 use crate::view;
 
 /// Simulates the scene and writes the page.
 pub fn view(args: &ViewArgs) -> Result<(), AppError> {
+    require_extension(&args.output, "html")?;
     // A place where nothing can be written is known before the run.
     let mut out = Target::open(&args.output)?;
     let replay = Replay::of(&args.input.scene, &args.input.how)?;

@@ -48,10 +48,11 @@ impl Container {
         }))
     }
 
-    /// The values of keys.
-    pub fn values(&mut self, values: &[[f32; 3]]) -> usize {
+    /// The values of keys, of so many numbers each.
+    pub fn values<const N: usize>(&mut self, values: &[[f32; N]]) -> usize {
         let view = self.view(values.as_flattened().iter().flat_map(|x| x.to_le_bytes()), None);
-        self.accessor(json!({ "bufferView": view, "componentType": FLOAT, "type": "VEC3", "count": values.len() }))
+        let kind = format!("VEC{N}");
+        self.accessor(json!({ "bufferView": view, "componentType": FLOAT, "type": kind, "count": values.len() }))
     }
 
     fn view(&mut self, bytes: impl Iterator<Item = u8>, target: Option<Target>) -> usize {

@@ -6,6 +6,7 @@
 mod container;
 mod keys;
 mod sphere;
+mod turns;
 
 use crate::error::AppError;
 use crate::replay::Replay;
@@ -16,6 +17,7 @@ pub use keys::Keys;
 use keys::Track;
 use nalgebra::{Unit, Vector3};
 use serde_json::{Value, json};
+use turns::Turns;
 
 /// The share of the stage's extent that a ball without a radius is drawn with.
 const POINT_SHARE: f64 = 1.0 / 256.0;
@@ -30,6 +32,12 @@ const SURFACE_COLOURS: [[f64; 3]; 6] = [
     [0.71, 0.69, 0.51],
 ];
 const BALL_COLOUR: [f64; 3] = [0.85, 0.22, 0.02];
+
+/// The other side of a ball that turns, so that it is seen to.
+const SIDE_COLOUR: [f64; 3] = [0.95, 0.78, 0.55];
+
+/// More keys of rotation than this are taken for a slip: they would be a file of a gigabyte.
+const TURN_LIMIT: f64 = 5e7;
 
 /// The bytes of the model, a `.glb`.
 pub fn glb(name: &str, replay: &Replay, keys: Keys) -> Result<Vec<u8>, AppError> {
@@ -46,20 +54,31 @@ pub fn glb(name: &str, replay: &Replay, keys: Keys) -> Result<Vec<u8>, AppError>
     for (i, (surface, prop)) in replay.scene.surfaces.iter().zip(&stage.props).enumerate() {
         builder.surface(&mut container, &surface.name, &SURFACE_COLOURS[i % SURFACE_COLOURS.len()], prop);
     }
-    let sphere = builder.sphere(&mut container);
+    let sphere = builder.sphere(&mut container, replay.scene.spins());
     let first = builder.nodes.len();
     for (i, ball) in replay.scene.balls.iter().enumerate() {
         builder.ball(sphere, i, ball);
     }
     let off = keys::tolerance(builder.extent);
     let (mut channels, mut samplers) = (Vec::new(), Vec::new());
+    let mut turns_left = TURN_LIMIT;
     for (i, run) in replay.balls.iter().enumerate() {
+        let mut add = |path: &str, input: usize, output: usize, interpolation: &str| {
+            channels.push(json!({ "sampler": samplers.len(), "target": { "node": first + i, "path": path } }));
+            samplers.push(json!({ "input": input, "output": output, "interpolation": interpolation }));
+        };
         let track = Track::of(run, replay.scene.duration, keys, &origin, off);
         if track.times.len() > 1 {
-            let input = container.times(&track.times);
-            let output = container.values(&track.values);
-            channels.push(json!({ "sampler": samplers.len(), "target": { "node": first + i, "path": "translation" } }));
-            samplers.push(json!({ "input": input, "output": output, "interpolation": keys.interpolation() }));
+            let (input, output) = (container.times(&track.times), container.values(&track.values));
+            add("translation", input, output, keys.interpolation());
+        }
+        if replay.scene.spins() {
+            let turns = Turns::of(run, replay.scene.duration, keys, turns_left).ok_or_else(too_many_turns)?;
+            turns_left -= turns.times.len() as f64;
+            if turns.turn() {
+                let (input, output) = (container.times(&turns.times), container.values(&turns.values));
+                add("rotation", input, output, "LINEAR");
+            }
         }
     }
     let (rotation, offset) = upright(&stage.up, &origin);
@@ -108,16 +127,21 @@ impl Builder {
         self.meshes.push(json!({ "name": name, "primitives": [primitive] }));
     }
 
-    /// The mesh that all balls are.
-    fn sphere(&mut self, container: &mut Container) -> usize {
-        let (vertices, faces) = sphere::unit();
-        let vertices: Vec<[f32; 3]> = vertices.iter().map(single).collect();
+    /// The mesh that all balls are; of two colours where they turn.
+    fn sphere(&mut self, container: &mut Container, turns: bool) -> usize {
+        let (corners, faces) = sphere::unit();
+        let vertices: Vec<[f32; 3]> = corners.iter().map(single).collect();
         let places = container.vectors(&vertices, Target::Vertices);
         let attributes = json!({ "POSITION": places, "NORMAL": places });
-        let indices = container.indices(&faces);
-        let material = self.material("ball", &BALL_COLOUR);
-        let primitive = json!({ "attributes": attributes, "indices": indices, "material": material });
-        self.meshes.push(json!({ "name": "ball", "primitives": [primitive] }));
+        let (others, ones): (Vec<_>, Vec<_>) =
+            faces.iter().partition(|face| turns && sphere::is_beyond_seam(**face, &corners));
+        let sides = [("ball", &BALL_COLOUR, ones), ("ball, other side", &SIDE_COLOUR, others)];
+        let primitives = sides.into_iter().filter(|(.., faces)| !faces.is_empty()).map(|(name, colour, faces)| {
+            let (indices, material) = (container.indices(&faces), self.material(name, colour));
+            json!({ "attributes": attributes, "indices": indices, "material": material })
+        });
+        let primitives: Vec<Value> = primitives.collect();
+        self.meshes.push(json!({ "name": "ball", "primitives": primitives }));
         self.meshes.len() - 1
     }
 
@@ -143,6 +167,12 @@ impl Builder {
         }));
         self.materials.len() - 1
     }
+}
+
+fn too_many_turns() -> AppError {
+    AppError::Usage(format!(
+        "the balls turn so often that they take more than {TURN_LIMIT:e} keys; take fewer balls, a shorter duration or --keys fps=N"
+    ))
 }
 
 /// The rotation, as a quaternion x, y, z, w, that takes `up` to y, and where it takes `origin`.

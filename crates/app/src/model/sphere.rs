@@ -34,6 +34,12 @@ pub fn unit() -> (Vec<Vector3<f64>>, Vec<[u32; 3]>) {
     (vertices, faces)
 }
 
+/// Whether a face is beyond the seam of a tennis ball: z = 2 (x^2 - y^2) parts the sphere into two sides of one shape.
+pub fn is_beyond_seam(face: [u32; 3], vertices: &[Vector3<f64>]) -> bool {
+    let middle = face.iter().map(|&i| vertices[i as usize]).sum::<Vector3<f64>>().normalize();
+    middle.z < 2.0 * (middle.x * middle.x - middle.y * middle.y)
+}
+
 fn split(vertices: &mut Vec<Vector3<f64>>, faces: &[[u32; 3]]) -> Vec<[u32; 3]> {
     let mut middles: BTreeMap<(u32, u32), u32> = BTreeMap::new();
     let mut middle = |a: u32, b: u32| {

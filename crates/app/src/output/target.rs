@@ -11,6 +11,21 @@ pub fn is_stdout(path: &Path) -> bool {
     path == Path::new("-")
 }
 
+/// Refuses a file whose name does not end as its form does, such as in `.svg`; what is no regular file may be called anything.
+pub fn require_extension(path: &Path, extension: &str) -> Result<(), AppError> {
+    let is_right = path.extension().is_some_and(|e| e.eq_ignore_ascii_case(extension));
+    if is_right || is_stdout(path) || path.metadata().is_ok_and(|data| !data.is_file() && !data.is_dir()) {
+        return Ok(());
+    }
+    let shown = path.display();
+    Err(AppError::Usage(format!("{shown}: the form follows from the extension, which is .{extension}")))
+}
+
+/// What went wrong, without the name of the temporary file, which the user has not given.
+fn plain(error: io::Error) -> io::Error {
+    error.raw_os_error().map_or(error, io::Error::from_raw_os_error)
+}
+
 /// Where bytes go.
 pub struct Target {
     shown: String,
@@ -43,7 +58,7 @@ impl Target {
         let shown = if is_stdout(path) { "standard output".to_owned() } else { path.display().to_string() };
         match Writer::open(path) {
             Ok(writer) => Ok(Self { shown, writer }),
-            Err(source) => Err(AppError::Write { path: shown, source }),
+            Err(source) => Err(AppError::Write { path: shown, source: plain(source) }),
         }
     }
 

@@ -31,7 +31,7 @@ pub fn css() -> String {
     // A string takes everything that is written to it.
     let _ = write!(
         css,
-        "\n.carom-chart text {{ font: {TEXT}px system-ui, 'Segoe UI', Roboto, 'DejaVu Sans', sans-serif; fill: #1f2328; }}\n\
+        "\n.carom-chart {{ max-width: 100%; height: auto; }}\n.carom-chart text {{ font: {TEXT}px system-ui, 'Segoe UI', Roboto, 'DejaVu Sans', sans-serif; fill: #1f2328; }}\n\
          .carom-chart .title {{ font-size: {TITLE}px; font-weight: 600; }}\n\
          .carom-chart .name {{ font-weight: 600; paint-order: stroke; stroke: #ffffff; stroke-width: 4px; stroke-linejoin: round; }}\n\
          .carom-chart .series {{ fill: none; stroke-width: 2px; stroke-linejoin: round; stroke-linecap: round; }}\n\

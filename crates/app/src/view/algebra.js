@@ -18,6 +18,18 @@ function across(n) {
   return unit(subtract(e, times(n, dot(e, n))));
 }
 
+// Quaternions, as arrays x, y, z, w: the rotation by a vector, about its direction and by its length; and two rotations, `b` and then `a`.
+function rotation(turn) {
+  const angle = norm(turn);
+  const share = angle > 0 ? Math.sin(angle / 2) / angle : 0.5;
+  return [...times(turn, share), Math.cos(angle / 2)];
+}
+
+function compose(a, b) {
+  const v = add(add(times(b, a[3]), times(a, b[3])), cross(a, b));
+  return [...v, a[3] * b[3] - dot(a, b)];
+}
+
 function multiply(a, b) {
   const product = new Float32Array(16);
   for (let column = 0; column < 4; column++) {

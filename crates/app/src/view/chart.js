@@ -45,7 +45,7 @@ class EnergyChart {
       for (let k = 0; k <= parts; k++) {
         const time = from + ((to - from) * k) / parts;
         const position = run.placeIn(i, run.fraction(ball, i, time));
-        const energy = run.energyAt(position, run.velocityIn(ball, i, time));
+        const energy = run.energyAt(ball, position, run.velocityIn(ball, i, time), run.turningIn(ball, i, time).spin);
         const mass = run.mass[ball];
         this.samples.push({ time, kinetic: mass * energy.kinetic, potential: mass * energy.potential });
       }

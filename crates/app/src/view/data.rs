@@ -10,6 +10,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use carom_dynamics::events::{EventKind, Motion};
 use carom_dynamics::integrators::Step;
+use carom_dynamics::observer::Turning;
 use carom_dynamics::surface::{Shape, Surface};
 use nalgebra::Vector3;
 use serde::{Serialize, Serializer};
@@ -35,6 +36,8 @@ pub struct Data {
     surfaces: Vec<SurfaceData>,
     balls: BallData,
     segments: SegmentData,
+    /// How the balls turn; none where nothing turns them.
+    turning: Option<TurningData>,
     events: EventData,
 }
 
@@ -55,6 +58,8 @@ struct BallData {
     radius: Packed<f32>,
     /// In kg; 1 where a mass is unknown.
     mass: Packed<f32>,
+    /// The moment of inertia in units of m r^2.
+    inertia: Packed<f32>,
     /// When its simulation ended, in s.
     end: Packed<f64>,
     /// Where its segments begin in the lists of them; one more than there are balls.
@@ -74,8 +79,19 @@ struct SegmentData {
     degree: Packed<u8>,
     /// The start, the terms of f, f^2, ... in m and, where it has them, the velocity's in m/s, as many; one segment after the other.
     terms: Packed<f32>,
-    /// 0 flying, 1 sliding, 2 resting.
+    /// 0 flying, 1 sliding, 2 rolling, 3 resting.
     motion: Packed<u8>,
+}
+
+/// A list of numbers for each stretch of motion, of its turning.
+#[derive(Default, Serialize)]
+struct TurningData {
+    /// How the ball has turned until then: a quaternion, x, y, z, w.
+    orientation: Packed<f32>,
+    /// The angular velocities at its start and its end, in rad/s, but for the decay.
+    spin: Packed<f32>,
+    /// The time constant of the decay in s; 0 for none, where the angular velocity changes evenly.
+    decay: Packed<f32>,
 }
 
 /// A list of numbers for each event.
@@ -132,14 +148,17 @@ impl Data {
             mass: Packed(
                 scene.balls.iter().map(|b| b.mass().filter(|_| masses.is_some()).unwrap_or(1.0) as f32).collect(),
             ),
+            inertia: Packed(scene.balls.iter().map(|b| b.inertia() as f32).collect()),
             end: Packed(replay.balls.iter().map(|run| run.outcome.time).collect()),
             segments: Packed(vec![0]),
             events: Packed(vec![0]),
         };
         let mut segments = SegmentData::default();
+        let mut turning = scene.spins().then(TurningData::default);
         let mut events = EventData::default();
         for run in &replay.balls {
             segments.add(run, &origin);
+            turning.iter_mut().for_each(|turning| turning.add(run));
             events.add(run);
             balls.segments.0.push(segments.time.0.len() as u32);
             balls.events.0.push(events.time.0.len() as u32);
@@ -156,6 +175,7 @@ impl Data {
             surfaces: surfaces.map(|(surface, prop)| SurfaceData::of(surface, prop, &origin)).collect(),
             balls,
             segments,
+            turning,
             events,
         }
     }
@@ -195,9 +215,24 @@ impl SegmentData {
             }
             self.motion.0.push(match segment.motion {
                 Motion::Flying => 0,
-                Motion::Sliding | Motion::Rolling => 1,
-                Motion::Resting => 2,
+                Motion::Sliding => 1,
+                Motion::Rolling => 2,
+                Motion::Resting => 3,
             });
+        }
+    }
+}
+
+impl TurningData {
+    fn add(&mut self, run: &BallRun) {
+        let orientations = run.trajectory.orientations();
+        for (segment, orientation) in run.trajectory.segments.iter().zip(orientations) {
+            self.orientation.0.extend(orientation.coords.iter().map(|&x| x as f32));
+            let still = Turning { from: Vector3::zeros(), to: Vector3::zeros(), decay: None };
+            let Turning { from, to, decay } = segment.turning.unwrap_or(still);
+            self.spin.push(&from);
+            self.spin.push(&to);
+            self.decay.0.push(decay.map_or(0.0, |decay| decay.time_constant() as f32));
         }
     }
 }

@@ -159,7 +159,6 @@ camera.home();
 chooseBall(0);
 // What moves by itself asks first.
 play(!calm.matches);
-requestAnimationFrame(frame);
 
 // A page can be opened at a moment and at a ball: run.html#t=1.5&ball=2&near=0.8
 const wish = new URLSearchParams(location.hash.slice(1));
@@ -169,6 +168,8 @@ if (wish.has("t")) {
   play(false);
   seek(Number(wish.get("t")) || 0);
 }
+// The first picture is there when the page is: a canvas that has not been drawn to is black.
+frame(performance.now());
 
 // A handle for scripts and for the console.
 window.carom = { run, state, camera, seek, play, chooseBall, chooseEvent, follow, draw };

@@ -15,6 +15,9 @@ function describe(list, entries) {
   list.replaceChildren(...parts);
 }
 
+// What single precision leaves of a coordinate that is none, in a run of that size, is none.
+const coordinates = (place, size) => triple(place.map((x) => (Math.abs(x) < size * 2 ** -22 ? 0 : x)));
+
 const triple = (v, count = 4) => v.map((x) => digits(x, count)).join(", ");
 
 class Panel {
@@ -32,8 +35,7 @@ class Panel {
 
   // The balls by what they do, or the one that is chosen by what it is.
   legend(now, counts) {
-    const parts = [["flying", counts.flying], ["sliding", counts.sliding], ["resting", counts.resting], ["ended", counts.ended]];
-    const items = parts.filter(([, n]) => n > 0).map(([name, n]) => {
+    const items = Object.entries(counts).filter(([, n]) => n > 0).map(([name, n]) => {
       const item = document.createElement("span");
       const dot = document.createElement("span");
       dot.className = "dot";
@@ -48,11 +50,14 @@ class Panel {
     const { run } = this;
     const velocity = run.velocity(ball, now);
     const place = add(run.position(ball, now), run.origin);
+    const { spin } = run.turning(ball, now);
+    const turns = norm(spin) / (2 * Math.PI);
     describe(element("readout"), [
       ["state", run.motionOf(ball, now)],
-      ["position", `${triple(place)} m`],
+      ["position", `${coordinates(place, run.size)} m`],
       ["velocity", `${triple(velocity)} m/s`],
       ["speed", `${digits(norm(velocity))} m/s`],
+      ...(run.turns ? [["spin", `${triple(spin)} rad/s`], ["turns", `${digits(turns)} a second`]] : []),
       ["radius", run.radius[ball] > 0 ? `${plain(run.radius[ball])} m` : "a point"],
     ]);
   }
@@ -115,15 +120,16 @@ class Panel {
     const along = (v) => (Math.abs(dot(v, event.normal)) > 1e-6 * norm(v) ? dot(v, event.normal) : 0);
     const closing = 0 - along(event.velocityIn);
     const leaving = along(event.velocityOut);
-    const before = run.energyAt(event.position, event.velocityIn).kinetic;
-    const after = run.energyAt(event.position, event.velocityOut).kinetic;
+    const before = run.energyAt(ball, event.position, event.velocityIn, event.spinIn).kinetic;
+    const after = run.energyAt(ball, event.position, event.velocityOut, event.spinOut).kinetic;
     describe(element("event"), [
       ["event", `${event.kind} at ${digits(event.time, 7)} s`],
       ["surface", event.face >= 0 ? `${event.surface}, face ${event.face}` : event.surface],
-      ["position", `${triple(add(event.position, run.origin))} m`],
+      ["position", `${coordinates(add(event.position, run.origin), run.size)} m`],
       ["normal", triple(event.normal)],
       ["v before", `${triple(event.velocityIn)} m/s`],
       ["v after", `${triple(event.velocityOut)} m/s`],
+      ...(run.turns ? [["spin before", `${triple(event.spinIn)} rad/s`], ["spin after", `${triple(event.spinOut)} rad/s`]] : []),
       ["closing, leaving", `${digits(closing)}, ${digits(leaving)} m/s`],
       ["energy lost", before > 0 ? `${digits((100 * (before - after)) / before)} % of the kinetic` : "none"],
     ]);

@@ -70,7 +70,8 @@ function readLook() {
     faint: colour("quiet"),
     edge: colour("quiet"),
     path: colour("accent"),
-    tints: { flying: colour("flying"), sliding: colour("sliding"), resting: colour("resting"), ended: colour("quiet") },
+    later: colour("later"),
+    tints: { flying: colour("flying"), sliding: colour("sliding"), rolling: colour("rolling"), resting: colour("resting"), ended: colour("quiet") },
     palette: isDark ? night : light,
     contrast: isDark ? 0.62 : 0.5,
     spacing: 10 ** Math.round(Math.log10(run.size / 12)),
@@ -190,7 +191,7 @@ function draw() {
   if (state.mark !== null && run.eventTime[state.mark] !== time) state.mark = null;
   const chosen = state.mark === null ? null : state.mark - first;
   picture.draw(camera, time, { ...look, ball, mark: chosen, surfaces: state.surfaces });
-  const counts = { flying: 0, sliding: 0, resting: 0, ended: 0 };
+  const counts = { flying: 0, sliding: 0, rolling: 0, resting: 0, ended: 0 };
   for (let i = 0; i < run.count; i++) counts[run.motionOf(i, time)] += 1;
   panel.legend(time, counts);
   panel.readout(ball, time);

@@ -1,6 +1,6 @@
 // The run: what the program wrote into this page, and where every ball is at any time of it.
 
-const MOTIONS = ["flying", "sliding", "resting"];
+const MOTIONS = ["flying", "sliding", "rolling", "resting"];
 const OWN_VELOCITY = 16; // what a degree has more when the velocity has terms of its own
 
 function unpack(text, Type) {
@@ -26,9 +26,10 @@ class Run {
       vertices: unpack(surface.vertices, Float32Array),
       faces: unpack(surface.faces, Uint32Array),
     }));
-    const { balls, segments, events } = data;
+    const { balls, segments, turning, events } = data;
     this.radius = unpack(balls.radius, Float32Array);
     this.mass = unpack(balls.mass, Float32Array);
+    this.inertia = unpack(balls.inertia, Float32Array);
     this.end = unpack(balls.end, Float64Array);
     this.count = this.radius.length;
     this.firstSegment = unpack(balls.segments, Uint32Array);
@@ -39,6 +40,10 @@ class Run {
     this.terms = unpack(segments.terms, Float32Array);
     this.placeTerms();
     this.motion = unpack(segments.motion, Uint8Array);
+    this.turns = turning !== null;
+    this.orientations = this.turns && unpack(turning.orientation, Float32Array);
+    this.spins = this.turns && unpack(turning.spin, Float32Array);
+    this.decays = this.turns && unpack(turning.decay, Float32Array);
     this.kinds = events.kinds;
     this.eventTime = unpack(events.time, Float64Array);
     this.eventKind = unpack(events.kind, Uint8Array);
@@ -148,18 +153,52 @@ class Run {
     return times(sum, 1 / this.segmentSeconds[segment]);
   }
 
+  // The angular velocity at `time` within a segment, and how the ball has turned by then: as the program's `Turning` has it.
+  turningIn(ball, segment, time) {
+    if (!this.turns) return { spin: [0, 0, 0], orientation: [0, 0, 0, 1] };
+    const [begin, end] = [this.segmentTime[segment], this.segmentEnd(ball, segment)];
+    const seconds = clamp(time, begin, end) - begin;
+    const from = Array.from(this.spins.subarray(6 * segment, 6 * segment + 3));
+    const to = Array.from(this.spins.subarray(6 * segment + 3, 6 * segment + 6));
+    const before = Array.from(this.orientations.subarray(4 * segment, 4 * segment + 4));
+    const tau = this.decays[segment];
+    if (tau > 0) {
+      const left = Math.exp(-seconds / tau);
+      return { spin: times(from, left), orientation: compose(rotation(times(from, tau * (1 - left))), before) };
+    }
+    const spin = end > begin ? add(from, times(subtract(to, from), seconds / (end - begin))) : to;
+    const twist = norm(cross(from, spin)) * seconds ** 2;
+    const turn = Math.max(norm(from), norm(spin)) * seconds;
+    const steps = clamp(Math.ceil(Math.min(8 * Math.sqrt(twist), 2 * turn)), 1, 256);
+    const step = seconds / steps;
+    let orientation = before;
+    for (let k = 0; k < steps; k++) {
+      const [a, b] = [k, k + 1].map((k) => add(from, times(subtract(spin, from), k / steps)));
+      const turned = add(times(add(a, b), step / 2), times(cross(b, a), step ** 2 / 12));
+      orientation = compose(rotation(turned), orientation);
+    }
+    return { spin, orientation };
+  }
+
+  turning(ball, time) {
+    if (this.isStill(ball)) return { spin: [0, 0, 0], orientation: [0, 0, 0, 1] };
+    return this.turningIn(ball, this.segment(ball, time), time);
+  }
+
   motionOf(ball, time) {
     if (this.isStill(ball) || (time > this.end[ball] && this.end[ball] < this.duration)) return "ended";
     return MOTIONS[this.motion[this.segment(ball, time)]];
   }
 
-  // v^2 / 2 and -g . x per kg, the potential from the lowest ball, as the program's own balance has it.
-  energyAt(position, velocity) {
-    return { kinetic: dot(velocity, velocity) / 2, potential: -dot(this.gravity, position) - this.floor };
+  // v^2 / 2, of turning too, and -g . x per kg, the potential from the lowest ball, as the program's own balance has it.
+  energyAt(ball, position, velocity, spin) {
+    const surface = times(spin, this.radius[ball]);
+    const kinetic = (dot(velocity, velocity) + this.inertia[ball] * dot(surface, surface)) / 2;
+    return { kinetic, potential: -dot(this.gravity, position) - this.floor };
   }
 
   energy(ball, time) {
-    return this.energyAt(this.position(ball, time), this.velocity(ball, time));
+    return this.energyAt(ball, this.position(ball, time), this.velocity(ball, time), this.turning(ball, time).spin);
   }
 
   totalEnergy(time) {
@@ -197,7 +236,18 @@ class Run {
       normal: vector(this.eventNormal),
       velocityIn: vector(this.eventIn),
       velocityOut: vector(this.eventOut),
+      ...this.spinsAt(ball, time),
     };
+  }
+
+  // The angular velocities just before and just after a moment.
+  spinsAt(ball, time) {
+    if (!this.turns || this.isStill(ball)) return { spinIn: [0, 0, 0], spinOut: [0, 0, 0] };
+    const after = this.segment(ball, time);
+    let before = after;
+    while (before > this.firstSegment[ball] && this.segmentTime[before] >= time) before -= 1;
+    const spin = (segment) => this.turningIn(ball, segment, time).spin;
+    return { spinIn: spin(before), spinOut: spin(after) };
   }
 
   // Some hundred points of what there is to see, spread over all of it.

@@ -36,13 +36,18 @@ const BALL_VERTEX = `#version 300 es
 in vec2 corner;
 in vec4 ball;
 in vec4 tint;
+in vec4 orientation;
 uniform mat4 view, projection;
 uniform float pixel, least;
 out vec2 q;
 out vec3 centre;
 out vec4 colour;
 out float radius;
+flat out vec4 turn;
+flat out mat3 seen;
 void main() {
+  turn = orientation;
+  seen = mat3(view);
   centre = (view * vec4(ball.xyz, 1.0)).xyz;
   // Not smaller than a few pixels, so that it can be seen and met.
   radius = max(ball.w, least * tint.a * pixel * -centre.z);
@@ -57,10 +62,22 @@ in vec2 q;
 in vec3 centre;
 in vec4 colour;
 in float radius;
+flat in vec4 turn;
+flat in mat3 seen;
 uniform mat4 projection;
 uniform vec3 light;
-uniform float flatness;
+uniform float flatness, marked;
 out vec4 shade;
+// A seam like a tennis ball's, and one side of it darker, so that any turn is seen: z = 2 (x^2 - y^2) on the ball.
+float pattern(vec3 n, float soft) {
+  vec3 v = n * seen;
+  vec3 p = v - 2.0 * cross(turn.xyz, turn.w * v - cross(turn.xyz, v));
+  float side = p.z - 2.0 * (p.x * p.x - p.y * p.y);
+  vec3 slope = vec3(-4.0 * p.x, 4.0 * p.y, 1.0);
+  float off = side / max(length(slope - dot(slope, p) * p), 0.2);
+  float line = (1.0 - smoothstep(0.06, 0.06 + 2.0 * soft, abs(off))) * clamp(1.5 - 6.0 * soft, 0.0, 1.0);
+  return mix(mix(0.72, 1.0, smoothstep(-soft, soft, off)), 1.7, line);
+}
 void main() {
   float far = length(q);
   float soft = fwidth(far);
@@ -68,6 +85,7 @@ void main() {
   if (cover <= 0.0) discard;
   vec3 n = vec3(q, sqrt(max(1.0 - far * far, 0.0)));
   float bright = mix(0.55 + 0.55 * max(dot(n, light), 0.0), 1.0, flatness);
+  if (marked > 0.0) bright *= pattern(n, soft);
   vec4 front = projection * vec4(centre + n * radius, 1.0);
   gl_FragDepth = clamp(0.5 * front.z / front.w + 0.5, 0.0, 1.0);
   shade = vec4(colour.rgb * bright, cover);
@@ -103,10 +121,11 @@ const LINE_FRAGMENT = `#version 300 es
 precision highp float;
 in float time;
 uniform vec4 colour;
-uniform float now, after;
+uniform vec3 later;
+uniform float now;
 out vec4 shade;
 void main() {
-  shade = vec4(colour.rgb, colour.a * (time > now ? after : 1.0));
+  shade = vec4(time > now ? later : colour.rgb, colour.a);
 }`;
 
 class WebGLPicture {
@@ -187,17 +206,18 @@ class WebGLPicture {
     return { array, buffer, count: data.length / 8 };
   }
 
-  // Balls, or marks of one size: eight numbers each, x, y, z, radius and red, green, blue, share of the least size.
+  // Balls, or marks of one size: twelve numbers each, x, y, z, radius; red, green, blue, share of the least size; and the orientation.
   cloud(count) {
     const { gl } = this;
     const array = gl.createVertexArray();
     gl.bindVertexArray(array);
     gl.bindBuffer(gl.ARRAY_BUFFER, this.square);
     this.attribute(this.programs.ball, "corner", 2, 0, 0, 0);
-    const data = new Float32Array(8 * count);
+    const data = new Float32Array(12 * count);
     const buffer = this.buffer(data);
-    this.attribute(this.programs.ball, "ball", 4, 32);
-    this.attribute(this.programs.ball, "tint", 4, 32, 16);
+    this.attribute(this.programs.ball, "ball", 4, 48);
+    this.attribute(this.programs.ball, "tint", 4, 48, 16);
+    this.attribute(this.programs.ball, "orientation", 4, 48, 32);
     gl.bindVertexArray(null);
     return { array, buffer, data, count };
   }
@@ -236,7 +256,7 @@ class WebGLPicture {
     const scene = { matrices, eye, light, look, width, height };
     this.drawSurfaces(scene, styles, "solid");
     this.drawEdges(scene, styles);
-    this.drawLines(this.paths.lines, scene, [...look.path, 0.95], 2 * look.ratio, now, 0.3);
+    this.drawLines(this.paths.lines, scene, [...look.path, 1], 2 * look.ratio, now, look.later);
     this.fillMarks(now, look);
     this.drawCloud(this.marks, scene, camera, lightSeen, 4, 1);
     this.fillBalls(now, look);
@@ -271,11 +291,12 @@ class WebGLPicture {
     this.surfaces.forEach((surface, i) => {
       const all = styles[i] === "lines";
       if (all && !surface.all) surface.all = this.lines(withTime(edgesOf(surface.of, true)));
-      this.drawLines(all ? surface.all : surface.edges, scene, [...scene.look.edge, all ? 0.5 : 0.85], scene.look.ratio, 0, 1);
+      this.drawLines(all ? surface.all : surface.edges, scene, [...scene.look.edge, all ? 0.5 : 0.85], scene.look.ratio, 0, scene.look.edge);
     });
   }
 
-  drawLines(lines, { matrices, width, height }, colour, thickness, now, after) {
+  // Of what is later than `now` the colour is `later`: not the same one let through, which would be seen where stretches overlap.
+  drawLines(lines, { matrices, width, height }, colour, thickness, now, later) {
     const { gl } = this;
     const { program, uniforms } = this.programs.line;
     if (lines.count === 0) return;
@@ -285,7 +306,7 @@ class WebGLPicture {
     gl.uniform1f(uniforms.width, thickness);
     gl.uniform4fv(uniforms.colour, colour);
     gl.uniform1f(uniforms.now, now);
-    gl.uniform1f(uniforms.after, after);
+    gl.uniform3fv(uniforms.later, later);
     gl.bindVertexArray(lines.array);
     gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, lines.count);
   }
@@ -295,14 +316,15 @@ class WebGLPicture {
     for (let ball = 0; ball < this.run.count; ball++) {
       const place = this.run.position(ball, now);
       const tint = look.tints[this.run.motionOf(ball, now)];
-      data.set([...place, this.run.radius[ball], ...tint, ball === look.ball ? 1.6 : 1], 8 * ball);
+      const { orientation } = this.run.turning(ball, now);
+      data.set([...place, this.run.radius[ball], ...tint, ball === look.ball ? 1.6 : 1, ...orientation], 12 * ball);
     }
   }
 
   fillMarks(now, look) {
     this.markPlaces?.forEach(({ place, time }, i) => {
       const tint = time <= now ? look.ink : look.faint;
-      this.marks.data.set([...place, 0, ...tint, i === look.mark ? 1.7 : 0.75], 8 * i);
+      this.marks.data.set([...place, 0, ...tint, i === look.mark ? 1.7 : 0.75], 12 * i);
     });
   }
 
@@ -319,6 +341,7 @@ class WebGLPicture {
     gl.uniform1f(uniforms.pixel, camera.pixel());
     gl.uniform1f(uniforms.least, least);
     gl.uniform1f(uniforms.flatness, flatness);
+    gl.uniform1f(uniforms.marked, this.run.turns && flatness === 0 ? 1 : 0);
     gl.bindVertexArray(cloud.array);
     gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, cloud.count);
   }

@@ -187,7 +187,9 @@ fn light_and_dark_follow_the_user_and_the_button() {
 #[test]
 fn pictures_at_two_sizes_in_light_and_dark() {
     let Some(mut browser) = Browser::start(&[]) else { return };
-    for (scene, time) in [("ramp", 1.2), ("room", 1.5), ("cow", 1.0), ("jacksboro", 25.0)] {
+    for (scene, time) in
+        [("ramp", 1.2), ("room", 1.5), ("cow", 1.0), ("topspin", 1.0), ("roll", 0.8), ("jacksboro", 25.0)]
+    {
         let page = Page::of(&format!("{scene}.toml"));
         for (name, window) in [("desk", DESK), ("hand", HAND)] {
             for (light, dark) in [("light", false), ("dark", true)] {

@@ -11,7 +11,7 @@ const SINGLE: f64 = 4e-7;
 fn balls_are_where_the_program_has_them() {
     let Some(mut browser) = Browser::start(&[]) else { return };
     // Parabolas; quartics of the adaptive pair; lines of Euler's method, whose velocity is not the slope of its path.
-    for scene in ["ramp.toml", "room.toml", "barrier-1d.toml", "cow.toml"] {
+    for scene in ["ramp.toml", "room.toml", "barrier-1d.toml", "cow.toml", "topspin.toml", "roll.toml"] {
         let page = Page::of(scene);
         browser.open(&page.path(), DESK);
         let frames = page.carom(&["run", "--quiet", "--fps", "7", "--frames", "-"]);
@@ -42,7 +42,7 @@ fn balls_are_where_the_program_has_them() {
 #[test]
 fn energy_is_the_summarys() {
     let Some(mut browser) = Browser::start(&[]) else { return };
-    for scene in ["ramp.toml", "room.toml", "barrier-1d.toml", "ball-drops.toml"] {
+    for scene in ["ramp.toml", "room.toml", "barrier-1d.toml", "ball-drops.toml", "topspin.toml", "roll.toml"] {
         let page = Page::of(scene);
         browser.open(&page.path(), DESK);
         let summary: Value = serde_json::from_str(&page.carom(&["run", "--quiet", "--summary", "-"])).expect("JSON");
@@ -56,6 +56,35 @@ fn energy_is_the_summarys() {
             // Single precision of heights over the floor, of which energies are made.
             assert!((told - ours).abs() <= 1e-5 * start, "{scene}, {key}: {told} and {ours}");
         }
+    }
+}
+
+#[test]
+fn balls_turn_as_the_program_has_them() {
+    let Some(mut browser) = Browser::start(&[]) else { return };
+    for scene in ["topspin.toml", "roll.toml"] {
+        let page = Page::of(scene);
+        browser.open(&page.path(), DESK);
+        let frames = page.carom(&["run", "--quiet", "--fps", "7", "--frames", "-"]);
+        for row in frames.lines().skip(1).map(|line| line.split(',').collect::<Vec<_>>()) {
+            let told = browser.eval(&format!("carom.run.turning({}, {}).spin", row[1], row[0]));
+            for axis in 0..3 {
+                let (ours, theirs) = (number(row[9 + axis]), told[axis].as_f64().expect("a number"));
+                assert!((ours - theirs).abs() <= SINGLE * 500.0, "{scene} {row:?}: {told}");
+            }
+        }
+        // What a stretch of motion ends with, by the page's own sum, is what the next one begins with, by the program's.
+        let worst = browser.number(
+            "(() => { const { run } = carom; let worst = 0; \
+             for (let ball = 0; ball < run.count; ball++) \
+               for (let i = run.firstSegment[ball]; i + 1 < run.firstSegment[ball + 1]; i++) { \
+                 const end = run.turningIn(ball, i, run.segmentEnd(ball, i)).orientation; \
+                 const begin = run.orientations.subarray(4 * (i + 1), 4 * (i + 1) + 4); \
+                 worst = Math.max(worst, 1 - Math.abs(end.reduce((sum, x, k) => sum + x * begin[k], 0))); } \
+             return worst; })()",
+        );
+        assert!(worst < 1e-6, "{scene}: {worst}");
+        assert_eq!(browser.complaints(), Vec::<String>::new(), "{scene}");
     }
 }
 

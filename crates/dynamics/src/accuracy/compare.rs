@@ -247,18 +247,6 @@ pub fn growth(a: &Course, b: &Course, shift: f64) -> Vec<f64> {
     pairs.map(|([x, _], [y, _])| norm(&sub(x, y)).to_f64() / shift).collect()
 }
 
-/// The greatest distance in m between courses at the sample times that can be compared.
-pub fn apart(times: &[f64], references: &[Compared], others: &[Course]) -> f64 {
-    let mut greatest = 0.0_f64;
-    for (reference, other) in references.iter().zip(others) {
-        let pairs = times.iter().zip(&reference.course.samples).zip(&other.samples);
-        for ((_, [x, _]), [y, _]) in pairs.take_while(|((t, _), _)| **t <= reference.until) {
-            greatest = greatest.max(norm(&sub(x, y)).to_f64());
-        }
-    }
-    greatest
-}
-
 /// What rounding makes of a course of the reference in a scene of `size` (m) after a growth of small differences, in m: a few hundred operations
 /// from one sample to the next.
 pub fn reference_error(size: f64, growth: f64) -> f64 {

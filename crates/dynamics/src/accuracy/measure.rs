@@ -48,7 +48,7 @@ pub fn measure(scene: &Scene, effort: &Effort, clock: &mut dyn FnMut() -> f64) -
     if all > scene.balls.len() {
         stage.remarks.push(Remark::SomeBalls { followed: scene.balls.len(), of: all });
     }
-    let References { kind, courses: references, growth, error } = stage.references()?;
+    let References { kind, courses: references, growth, error } = stage.references();
     let impacts = references.iter().map(|r| count(&r.course, r.until)).sum();
     let candidates = stage.candidates(effort, coarse)?;
     let mut measured: Vec<Measurement> = Vec::new();

@@ -44,6 +44,17 @@ impl Real {
         Self(self.0.exp())
     }
 
+    /// It to the power `p`; 0 of what is not above 0.
+    pub fn power(&self, p: &Self) -> Self {
+        if *self > Self::zero() { Self(self.0.powf(&p.0)) } else { Self::zero() }
+    }
+
+    /// The least power of two above its absolute value, as an exponent; of 0, minus infinity.
+    pub fn exponent(&self) -> f64 {
+        let (digits, exponent) = (self.0.repr().digits(), self.0.repr().exponent());
+        if self.is_zero() { f64::NEG_INFINITY } else { digits as f64 + exponent as f64 }
+    }
+
     /// Whether it is 0.
     pub fn is_zero(&self) -> bool {
         self.0 == FBig::<HalfEven, 2>::ZERO

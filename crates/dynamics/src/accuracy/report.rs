@@ -7,7 +7,6 @@ use super::resolution::Original;
 use super::variant::{Approach, Variant};
 use crate::counters::Counters;
 use crate::scene::Method;
-use crate::tolerance::FINEST_TOLERANCE;
 use std::fmt;
 
 /// What the methods are compared with.
@@ -17,8 +16,6 @@ pub enum ReferenceKind {
     ClosedForm,
     /// The same physics in 128 bits: Taylor series, and every surface on its own.
     Extended,
-    /// This crate's own adaptive pair at a tolerance of 1e-14, because an effect of the scene, which is named, has no series in the reference.
-    Itself(&'static str),
 }
 
 impl fmt::Display for ReferenceKind {
@@ -26,10 +23,6 @@ impl fmt::Display for ReferenceKind {
         match self {
             Self::ClosedForm => f.write_str("the closed form, in 128 bits"),
             Self::Extended => f.write_str("a solver of its own in 128 bits: Taylor series, every surface by itself"),
-            Self::Itself(effect) => write!(
-                f,
-                "only the adaptive pair at tolerance {FINEST_TOLERANCE:e}, which shares the code that it judges: {effect} is not in the solver of 128 bits"
-            ),
         }
     }
 }
@@ -247,6 +240,31 @@ impl fmt::Display for Remark {
 }
 
 /// The measurement of a scene.
+///
+/// ```
+/// # use carom_dynamics::body::Ball;
+/// # use carom_dynamics::effects::{friction::Friction, gravity::Gravity, restitution::Restitution};
+/// # use carom_dynamics::scene::Scene;
+/// # use carom_dynamics::surface::{Material, Shape, Surface};
+/// # use carom_geometry::plane::Plane;
+/// # use nalgebra::{Point3, Vector3};
+/// # let floor = Plane::from_point_normal(Point3::origin(), Vector3::z())?;
+/// # let material = Material { restitution: Restitution::new(0.5)?, friction: Friction::None };
+/// # let scene = Scene {
+/// #     gravity: Some(Gravity::uniform(Vector3::new(0.0, 0.0, -8.0))?),
+/// #     surfaces: vec![Surface { name: "floor".into(), material, shape: Shape::Plane(floor) }],
+/// #     balls: vec![Ball::new(Point3::new(0.0, 0.0, 4.0), Vector3::zeros(), 0.0, None)?],
+/// #     ..Scene::lasting(3.0)
+/// # };
+/// use carom_dynamics::accuracy::{Effort, measure};
+///
+/// // No timed runs: cost is counted as work.
+/// let effort = Effort { octaves: 2, decades: 2, repeats: 0, resolutions: false, ..Effort::default() };
+/// let report = measure(&scene, &effort, &mut || 0.0)?;
+/// let cheapest = report.cheapest(1e-3).ok_or("some method is right to a millimetre")?;
+/// assert_eq!(cheapest.variant.name(), "exact");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Report {
     /// What the methods are compared with.

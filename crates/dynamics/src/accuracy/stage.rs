@@ -1,7 +1,7 @@
 //! A scene with what is needed to judge runs of it: the references, the runs, their errors, and what the numbers mean.
 
 use super::candidate::{Candidate, shifted};
-use super::compare::{Compared, Ends, Errors, EulerLaws, Shares, Times, apart, distance, growth, reference_error};
+use super::compare::{Compared, Ends, Errors, EulerLaws, Shares, Times, distance, growth, reference_error};
 use super::course::{Course, Reach, Setting, follow};
 use super::measure::Effort;
 use super::real::vector;
@@ -16,17 +16,12 @@ use crate::effects::friction::Friction;
 use crate::error::SceneError;
 use crate::events::Motion;
 use crate::plan::Plan;
-use crate::scene::{Method, Scene};
-use crate::tolerance::FINEST_TOLERANCE;
+use crate::scene::Scene;
 use carom_geometry::rounding::UNIT_ROUNDOFF;
 use nalgebra::Vector3;
 
 /// Growth of small differences beyond which positions say nothing.
 const GROWTH_LIMIT: f64 = 1000.0;
-
-/// What a method that stands for a reference is held against to see how far it is off: itself with a tolerance this many times larger, which is
-/// not better.
-const COARSER: f64 = 16.0;
 
 /// A scene with what is needed to judge runs of it.
 pub(super) struct Stage<'a> {
@@ -44,43 +39,25 @@ pub(super) struct References {
     pub(super) courses: Vec<Compared>,
     /// The worst growth of small differences while they can be compared.
     pub(super) growth: f64,
-    /// How far they are off themselves, in m.
+    /// What rounding makes of them, in m.
     pub(super) error: f64,
 }
 
 impl Stage<'_> {
     /// The reference of each ball.
-    pub(super) fn references(&mut self) -> Result<References, SceneError> {
-        let fields: Result<Vec<Field>, _> = self.scene.balls.iter().map(|ball| Field::of(self.scene, ball)).collect();
+    pub(super) fn references(&mut self) -> References {
+        let fields: Vec<Field> = self.scene.balls.iter().map(|ball| Field::of(self.scene, ball)).collect();
         let size = self.plan.farthest.max(f64::MIN_POSITIVE);
+        let shift = size * 2f64.powi(-70);
         let direction = Vector3::new(0.5, 0.5, 0.5f64.sqrt());
-        let (pairs, shift, coarser, kind) = match fields {
-            Ok(fields) => {
-                let setting = Setting { plan: self.plan, world: self.world, times: &self.times.all };
-                let shift = size * 2f64.powi(-70);
-                let pair = |(ball, field): (&Ball, &Field)| {
-                    let course = |shift: f64| follow(&setting, ball, field, &vector(&(direction * shift)));
-                    (course(0.0), course(shift))
-                };
-                let pairs: Vec<(Course, Course)> = self.scene.balls.iter().zip(&fields).map(pair).collect();
-                let closed = fields.iter().all(Field::is_constant) && !self.world.has_faces();
-                (pairs, shift, None, if closed { ReferenceKind::ClosedForm } else { ReferenceKind::Extended })
-            }
-            Err(effect) => {
-                let shift = size * 2f64.powi(-30);
-                let fine = |shift: f64, tolerance: f64| -> Result<Vec<Course>, SceneError> {
-                    let balls = self.scene.balls.iter().map(|ball| shifted(ball, &(direction * shift)));
-                    let method = Some(Method::Adaptive { tolerance });
-                    let scene = Scene { balls: balls.collect(), method, ..self.scene.clone() };
-                    let candidate = Candidate::new(Variant::Adaptive, tolerance, &scene)?;
-                    Ok(self.beside(&scene).run(&candidate).iter().map(|r| r.course(self.plan.duration)).collect())
-                };
-                let finest = |shift: f64| fine(shift, FINEST_TOLERANCE);
-                let pairs = finest(0.0)?.into_iter().zip(finest(shift)?).collect();
-                let coarser = fine(0.0, COARSER * FINEST_TOLERANCE)?;
-                (pairs, shift, Some(coarser), ReferenceKind::Itself(effect))
-            }
+        let setting = Setting { plan: self.plan, world: self.world, times: &self.times.all };
+        let pair = |(ball, field): (&Ball, &Field)| {
+            let course = |shift: f64| follow(&setting, ball, field, &vector(&(direction * shift)));
+            (course(0.0), course(shift))
         };
+        let pairs: Vec<(Course, Course)> = self.scene.balls.iter().zip(&fields).map(pair).collect();
+        let closed = fields.iter().all(Field::is_constant) && !self.world.has_faces();
+        let kind = if closed { ReferenceKind::ClosedForm } else { ReferenceKind::Extended };
         let mut worst = 1.0_f64;
         let mut courses = Vec::new();
         for (ball, (course, moved)) in pairs.into_iter().enumerate() {
@@ -99,11 +76,7 @@ impl Stage<'_> {
             worst = known.fold(worst, |worst, g| worst.max(*g));
             courses.push(Compared { until: until.min(course.until), course });
         }
-        let error = match coarser {
-            None => reference_error(size, worst),
-            Some(coarser) => apart(&self.times.all, &courses, &coarser),
-        };
-        Ok(References { kind, courses, growth: worst, error })
+        References { kind, courses, growth: worst, error: reference_error(size, worst) }
     }
 
     /// The same stage for a scene that differs in its balls.

@@ -2,10 +2,10 @@
 //!
 //! Under constant acceleration the series ends, and is the parabola itself.
 
-use super::real::{BITS, Real, Vector, add, cross, dot, norm, rounded, scale, sub, vector};
+use super::real::{BITS, Real, Vector, add, cross, norm, rounded, scale, sub, vector};
+use super::resistance::{Resistance, Series};
 use crate::body::Ball;
 use crate::effects::buoyancy::ADDED_MASS;
-use crate::effects::drag::Law;
 use crate::scene::Scene;
 use nalgebra::Vector3;
 
@@ -21,15 +21,6 @@ pub struct Field {
     resistance: Option<(Resistance, Vector)>,
     spin: Spin,
     lift: Option<Lift>,
-}
-
-/// Resistance per mass.
-#[derive(Debug, Clone)]
-enum Resistance {
-    /// k / m of a = -(k/m) u.
-    Linear(Real),
-    /// c of a = -c |u| u.
-    Quadratic(Real),
 }
 
 /// The spin omega, falling as e^(-t / tau).
@@ -60,8 +51,8 @@ pub struct Flight {
 }
 
 impl Field {
-    /// What accelerates `ball` in `scene`; the name of an effect that has no series here, if there is one.
-    pub fn of(scene: &Scene, ball: &Ball) -> Result<Self, &'static str> {
+    /// What accelerates `ball` in `scene`.
+    pub fn of(scene: &Scene, ball: &Ball) -> Self {
         // Taken apart, so that an effect that comes to a scene is not forgotten here.
         let Scene {
             gravity,
@@ -87,22 +78,9 @@ impl Field {
             constant = scale(&g, &(&(&mass - &displaced) / &inertia));
         }
         let half = Real::from(0.5);
-        let quadratic = |coefficient: f64, density: f64| {
-            let c_rho = &Real::from(coefficient) * &Real::from(density);
-            Resistance::Quadratic(&(&(&half * &c_rho) * &area) / &inertia)
-        };
-        let resistance = match drag.filter(|drag| !drag.is_none()) {
-            None => None,
-            Some(drag) => {
-                let law = match drag.law() {
-                    Law::Linear(k) => Resistance::Linear(&Real::from(k) / &inertia),
-                    Law::Quadratic { coefficient, density } => quadratic(coefficient, density),
-                    Law::OfBall(density) => quadratic(ball.drag().unwrap_or(0.0), density),
-                    Law::Sphere { .. } => return Err("the drag of a smooth sphere"),
-                };
-                Some((law, vector(&drag.wind())))
-            }
-        };
+        let resistance = drag
+            .filter(|drag| !drag.is_none())
+            .map(|drag| (Resistance::of(&drag.law(), ball, &area, &inertia), vector(&drag.wind())));
         let turns = ball.spin() != Vector3::zeros() || scene.grips();
         let lift = magnus.filter(|_| turns).map(|magnus| {
             let (k_rho, wind) = magnus.parts();
@@ -111,7 +89,7 @@ impl Field {
         });
         let decay = spin_decay.map_or(Real::zero(), |d| Real::from(1.0) / Real::from(d.time_constant()));
         let spin = Spin { start: vector(&ball.spin()), decay };
-        Ok(Self { constant, resistance, spin, lift })
+        Self { constant, resistance, spin, lift }
     }
 
     /// The spin at the time `t`, in rad/s.
@@ -135,11 +113,7 @@ impl Field {
         let mut a = self.constant.clone();
         if let Some((law, wind)) = &self.resistance {
             let u = sub(v, wind);
-            let by = match law {
-                Resistance::Linear(k) => k.clone(),
-                Resistance::Quadratic(c) => c * &norm(&u),
-            };
-            a = sub(&a, &scale(&u, &by));
+            a = sub(&a, &scale(&u, &law.at(&u)));
         }
         if let Some(lift) = &self.lift {
             a = add(&a, &scale(&cross(&self.spin(t), &sub(v, &lift.wind)), &lift.factor));
@@ -156,16 +130,14 @@ impl Field {
         let wind = self.resistance.as_ref().map_or(zero(), |(_, wind)| wind.clone());
         // Coefficients of u = v - w.
         let mut u = vec![sub(v, &wind)];
-        let mut force = QuadraticForce::new(&u[0]);
+        let mut resisted = self.resistance.as_ref().map(|(law, _)| law.series(&u[0], &self.constant));
+        let holds = resisted.as_ref().map_or(f64::INFINITY, Series::holds);
         let spin = self.lift.as_ref().map(|lift| self.spin.series(t, &lift.factor));
         for k in 0..ORDER {
             let mut a = if k == 0 { self.constant.clone() } else { zero() };
-            let resisted = match &self.resistance {
-                None => zero(),
-                Some((Resistance::Linear(c), _)) => scale(&u[k], c),
-                Some((Resistance::Quadratic(c), _)) => scale(&force.coefficient(&u, k), c),
-            };
-            a = sub(&a, &resisted);
+            if let Some(resisted) = &mut resisted {
+                a = sub(&a, &resisted.coefficient(&u, k));
+            }
             if let (Some(lift), Some(spin)) = (&self.lift, &spin) {
                 // u + (w - w') for the Magnus force's own wind w'.
                 let first = sub(&add(&u[0], &wind), &lift.wind);
@@ -179,7 +151,7 @@ impl Field {
             let v = if k == 0 { add(term, &wind) } else { term.clone() };
             terms.push(scale(&v, &(Real::from(1.0) / Real::from((k + 1) as f64))));
         }
-        let seconds = length(&terms).min(remaining);
+        let seconds = length(&terms).min(holds).min(remaining);
         let bend = bend(&terms, seconds);
         Flight { terms, seconds, bend }
     }
@@ -207,60 +179,28 @@ const MARGIN: f64 = 1.0 + 1.0 / 1024.0;
 
 /// For how long the series holds: until its last terms are below the digits, as a power of two (Jorba and Zou 2005).
 fn length(terms: &[Vector]) -> f64 {
-    let size = |v: &Vector| rounded(v).norm();
+    // Of numbers that an f64 may not hold.
+    let size = |v: &Vector| v.iter().map(Real::exponent).fold(f64::NEG_INFINITY, f64::max);
     let scale = size(&terms[1]).max(size(&terms[2]));
     let last = terms.len() - 1;
     let until = |k: usize| {
         // |c_k| h^k <= 2^-BITS scale
         let c = size(&terms[k]);
-        if c > 0.0 { ((scale.log2() - c.log2() - BITS as f64) / k as f64).floor() } else { f64::INFINITY }
+        if c.is_finite() { ((scale - c - BITS as f64) / k as f64).floor() } else { f64::INFINITY }
     };
     let exponent = until(last).min(until(last - 1));
     if exponent > 60.0 { 2f64.powi(60) } else { 2f64.powf(exponent) }
 }
 
 fn bend(terms: &[Vector], seconds: f64) -> f64 {
-    let mut power = 1.0;
+    let seconds = Real::from(seconds);
+    let mut power = Real::from(1.0);
     let mut sum = 0.0;
-    for (k, term) in terms.iter().enumerate().skip(2) {
-        sum += (k * (k - 1)) as f64 * rounded(term).norm() * power;
-        power *= seconds;
+    for (k, c) in terms.iter().enumerate().skip(2) {
+        sum += (k * (k - 1)) as f64 * rounded(&scale(c, &power)).norm();
+        power = &power * &seconds;
     }
     sum * MARGIN
-}
-
-/// The series of |u| u, one coefficient after the other.
-struct QuadraticForce {
-    /// 1 if u begins at 0: then u = t w, and |u| u = t^2 |w| w.
-    shift: usize,
-    /// Coefficients of |u|, or of |w|.
-    speed: Vec<Real>,
-}
-
-impl QuadraticForce {
-    fn new(start: &Vector) -> Self {
-        let shift = usize::from(start.iter().all(Real::is_zero));
-        Self { shift, speed: Vec::new() }
-    }
-
-    /// Coefficient `k`; all of u up to `k` are known.
-    fn coefficient(&mut self, u: &[Vector], k: usize) -> Vector {
-        let zero = || [Real::zero(), Real::zero(), Real::zero()];
-        let Some(k) = k.checked_sub(2 * self.shift) else { return zero() };
-        let w = &u[self.shift..];
-        // |w|^2 = q, so s_0 = sqrt(q_0) and 2 s_0 s_k = q_k - sum s_i s_{k-i}.
-        let mut q = (0..=k).fold(Real::zero(), |sum, i| &sum + &dot(&w[i], &w[k - i]));
-        let s = if k == 0 {
-            q.sqrt()
-        } else {
-            for i in 1..k {
-                q = &q - &(&self.speed[i] * &self.speed[k - i]);
-            }
-            &q / &(&self.speed[0] + &self.speed[0])
-        };
-        self.speed.push(s);
-        (0..=k).fold(zero(), |sum, i| add(&sum, &scale(&w[k - i], &self.speed[i])))
-    }
 }
 
 impl Flight {
@@ -308,7 +248,7 @@ mod tests {
     fn field(g: f64, drag: Drag, radius: f64, mass: f64) -> Field {
         let ball = Ball::new(Point3::origin(), Vector3::zeros(), radius, Some(mass)).unwrap();
         let gravity = Some(Gravity::uniform(Vector3::new(0.0, 0.0, -g)).unwrap());
-        Field::of(&Scene { gravity, drag: Some(drag), ..Scene::lasting(1.0) }, &ball).unwrap()
+        Field::of(&Scene { gravity, drag: Some(drag), ..Scene::lasting(1.0) }, &ball)
     }
 
     fn end(field: &Field, x: Vector, v: Vector, from: f64, to: f64) -> (Vector, Vector) {
@@ -361,7 +301,7 @@ mod tests {
         let spin = Vector3::new(0.0, 0.0, 2.0 / factor);
         let ball = Ball::new(Point3::origin(), Vector3::zeros(), 0.5, Some(2.0)).unwrap().spinning(spin).unwrap();
         let scene = Scene { magnus: Some(Magnus::new(1.0, 1.0).unwrap()), ..Scene::lasting(1.0) };
-        let field = Field::of(&scene, &ball).unwrap();
+        let field = Field::of(&scene, &ball);
         let (_, v) = end(&field, origin(), vector(&Vector3::new(3.0, 0.0, 0.0)), 0.0, 1.0);
         assert!((v[0].to_f64() - 3.0 * 2f64.cos()).abs() < 4e-15 && (v[1].to_f64() - 3.0 * 2f64.sin()).abs() < 4e-15);
     }

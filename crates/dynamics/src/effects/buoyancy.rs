@@ -1,7 +1,7 @@
 //! Buoyancy, and the air that an accelerating ball takes along: (m + C_a rho V) dv/dt = (m - rho V) g + other forces.
 //!
 //! Archimedes' force is that on the displaced air; the added mass of a sphere is C_a = 1/2 of it (G. G. Stokes, 1843; L. D. Landau, E. M.
-//! Lifshitz, *Fluid Mechanics*, section 11). Both are constant, so that a flight without other effects stays an exact parabola. An
+//! Lifshitz, *Fluid Mechanics*). Both are constant, so that a flight without other effects stays an exact parabola. An
 //! impact is too short for the air: it is answered with the mass alone.
 
 use crate::body::Ball;

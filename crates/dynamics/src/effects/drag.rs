@@ -27,7 +27,7 @@ pub(crate) enum Law {
 const STOKES: f64 = 24.0;
 
 /// C of a smooth sphere at the Reynolds number `re`, up to 10^6: data correlation of F. A. Morrison, *An Introduction to Fluid
-/// Mechanics* (2013), equation 8.83.
+/// Mechanics* (2013), chapter 8.
 pub fn sphere_coefficient(re: f64) -> f64 {
     STOKES / re + beyond_stokes(re)
 }
@@ -47,6 +47,17 @@ fn beyond_stokes(re: f64) -> f64 {
 }
 
 /// Air resistance; wind is part of it, because without resistance wind does nothing.
+///
+/// ```
+/// use carom_dynamics::effects::drag::Drag;
+/// use nalgebra::Vector3;
+///
+/// // The book's linear law in a wind of 2 m/s, and the quadratic one of a sphere in air.
+/// let book = Drag::linear(0.05)?.in_wind(Vector3::new(2.0, 0.0, 0.0))?;
+/// let sphere = Drag::quadratic(0.47, 1.204)?;
+/// assert_eq!((book.wind().x, book.is_linear(), sphere.is_linear()), (2.0, true, false));
+/// # Ok::<(), carom_dynamics::error::ValueError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Drag {
     law: Law,

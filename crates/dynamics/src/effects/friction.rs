@@ -6,6 +6,21 @@ use crate::tolerance::LARGEST;
 use nalgebra::Vector3;
 
 /// The friction of a surface.
+///
+/// ```
+/// use carom_dynamics::effects::friction::Friction;
+/// use nalgebra::Vector3;
+///
+/// // 4 m/s along the surface, 2 m/s into it, restitution 1/2.
+/// let after = |friction: Friction| friction.slow(Vector3::new(4.0, 0.0, 0.0), 2.0, 0.5).x;
+/// assert_eq!(after(Friction::None), 4.0);
+/// assert_eq!(after(Friction::linear(0.25)?), 3.0);
+/// assert_eq!(after(Friction::coulomb(0.5)?), 4.0 - 0.5 * 2.0);
+/// assert_eq!(after(Friction::impulse(0.5)?), 4.0 - 0.5 * (1.0 + 0.5) * 2.0);
+/// // Never more than there is.
+/// assert_eq!(after(Friction::coulomb(9.0)?), 0.0);
+/// # Ok::<(), carom_dynamics::error::ValueError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Friction {
     /// None: v_t is kept.

@@ -1,12 +1,22 @@
 //! Restitution: v_n+ = -c_r v_n- (equation of section 3.2.1 of the chapter), with a c_r that is constant or falls with the speed.
 //!
-//! Above a closing speed at which the bodies begin to yield, c_r falls as v^(-1/4): K. L. Johnson, *Contact Mechanics* (1985), section 11.4,
+//! Above a closing speed at which the bodies begin to yield, c_r falls as v^(-1/4): K. L. Johnson, *Contact Mechanics* (1985), chapter 11,
 //! for a fully plastic impact. The fourth root is two square roots.
 
 use crate::body::Ball;
 use crate::error::{ValueError, require};
 
 /// The coefficient of restitution c_r, in [0, 1].
+///
+/// ```
+/// use carom_dynamics::effects::restitution::Restitution;
+///
+/// assert_eq!(Restitution::new(0.5)?.rebound(8.0), 4.0);
+/// // Of bodies that yield above 1 m/s: 16 times as fast, half the coefficient.
+/// let yielding = Restitution::falling(0.5, 1.0)?;
+/// assert_eq!((yielding.at(1.0), yielding.at(16.0)), (0.5, 0.25));
+/// # Ok::<(), carom_dynamics::error::ValueError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Restitution {
     c_r: f64,

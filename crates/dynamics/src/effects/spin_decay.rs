@@ -1,8 +1,9 @@
 //! The decay of spin in the air: omega(t) = omega(0) e^(-t / tau).
 //!
-//! The torque of the air is taken in proportion to the spin, so that a ball loses the same share of it in every second: 3 to 4 % on golf
-//! balls, tau of 25 to 30 s (A. M. Nathan, *The effect of spin-down on the flight of a baseball*, 2008, after A. J. Smits, D. R. Smith,
-//! *A new aerodynamic model of a golf ball in flight*, Science and Golf II, 1994).
+//! The torque of the air is taken in proportion to the spin, so that a ball loses the same share of it in every second: 3.3 to 4 % on golf
+//! balls, which is tau of 25 to 30 s (D. Tutelman, *Spin Decay for a Ball in Flight*, 2016). How tau depends on the ball and its speed: A. M.
+//! Nathan, *The Effect of Spin-Down on the Flight of a Baseball* (2008), from measurements by A. J. Smits and D. R. Smith, *A new aerodynamic
+//! model of a golf ball in flight*, Science and Golf II (1994).
 
 use crate::error::{ValueError, require};
 use crate::power::exponential;
@@ -27,6 +28,11 @@ impl SpinDecay {
     pub fn after(&self, spin: &Vector3<f64>, seconds: f64) -> Vector3<f64> {
         spin * exponential(-seconds / self.0)
     }
+
+    /// How long the spin of the start would turn the ball as far as it does in `seconds` >= 0, decaying: tau (1 - e^(-t / tau)), in s.
+    pub fn lasting(&self, seconds: f64) -> f64 {
+        self.0 * (1.0 - exponential(-seconds / self.0))
+    }
 }
 
 #[cfg(test)]
@@ -38,6 +44,9 @@ mod tests {
         let decay = SpinDecay::new(25.0).unwrap();
         let spin = Vector3::new(0.0, -300.0, 4.0);
         assert_eq!(decay.after(&spin, 0.0), spin);
+        assert_eq!(decay.lasting(0.0), 0.0);
+        // In all it turns as far as in one time constant without decay.
+        assert_eq!(decay.lasting(1e6), 25.0);
         assert!((decay.after(&spin, 50.0) - spin * (-2f64).exp()).norm() < 1e-12);
         assert!(SpinDecay::new(0.0).is_err() && SpinDecay::new(f64::NAN).is_err());
     }
