@@ -1,19 +1,19 @@
 //! Collision detection and determination: the earliest f over all surfaces, and what is touched there.
 
 use crate::body::State;
-use crate::contacts::{Contact, Contacts, MAX_CONTACTS};
+use crate::contacts::{Contact, Contacts, MAX_CONTACTS, PerContact};
 use crate::counters::Counters;
 use crate::integrators::Step;
 use crate::plan::Plan;
 use crate::tolerance::{merge_angle_squared, rate_rounding, touch_distance};
-use arrayvec::ArrayVec;
+use carom_geometry::bounds::amax;
 use carom_geometry::clearance::{Clearance, Entry};
 use carom_geometry::contact::{Hold, MovingBall};
 use carom_geometry::mesh::{Fold, Mesh};
 use carom_geometry::plane::Side;
 use carom_geometry::rounding::contact_doubt;
 use carom_geometry::site::{Bend, RegionBound, Site};
-use carom_geometry::sweep::Work;
+use carom_geometry::sweep::{Surroundings, Work};
 use nalgebra::{Point3, Vector3};
 use smallvec::SmallVec;
 use std::cmp::Ordering;
@@ -67,7 +67,7 @@ impl Free {
 }
 
 /// The returns of one step, one for each contact.
-pub type Returns = ArrayVec<Return, MAX_CONTACTS>;
+pub type Returns = PerContact<Return>;
 
 /// The clearance from a contact along the step: 0 now by definition, and its slope the contact's own rate (plus what a path that
 /// does not begin with the velocity adds).
@@ -75,16 +75,16 @@ fn leaving(step: &Step, contact: &Contact) -> Clearance {
     let mut c = [0.0; 5];
     // What the ball moves along, it leaves or enters by more than rounding or not at all.
     let along = contact.rate == 0.0;
-    let part = |v: &Vector3<f64>, of: f64| {
+    let part = |v: &Vector3<f64>, of: &Vector3<f64>| {
         let part = contact.normal.dot(v);
-        if along && part.abs() <= rate_rounding(of) { 0.0 } else { part }
+        if along && part.abs() <= rate_rounding(of.norm()) { 0.0 } else { part }
     };
     for (k, term) in step.path.terms().iter().enumerate() {
-        c[k + 1] = part(term, term.norm());
+        c[k + 1] = part(term, term);
     }
     if let Some(first) = step.path.terms().first() {
         let kick = first - step.velocity[0] * step.seconds;
-        c[1] = contact.rate * step.seconds + part(&kick, first.norm());
+        c[1] = contact.rate * step.seconds + part(&kick, first);
     }
     Clearance::new(c)
 }
@@ -119,12 +119,31 @@ fn leaves_region(step: &Step, bound: &RegionBound, from: f64) -> Entry {
     step.path.clearance(gap, &inward).first_entry(from, step.to)
 }
 
+/// A plane as seen from the side on which a ball is.
+#[derive(Debug, Clone, Copy)]
+struct FacingPlane {
+    surface: usize,
+    /// The unit normal towards the ball.
+    normal: Vector3<f64>,
+    point: Point3<f64>,
+}
+
+impl FacingPlane {
+    /// [`Plane::clearance`](carom_geometry::plane::Plane::clearance) from that side, bit for bit.
+    #[inline]
+    fn clearance(&self, x: &Point3<f64>, radius: f64) -> f64 {
+        self.normal.dot(&(x - self.point)) - radius
+    }
+}
+
 /// One ball among the surfaces of a plan.
 #[derive(Debug, Clone)]
 pub struct Obstacles<'a> {
     plan: &'a Plan,
-    /// On which side of each plane the ball is: decided once, and never again.
-    sides: Vec<Side>,
+    /// The planes from the side on which the ball is: decided once, and never again.
+    planes: Vec<FacingPlane>,
+    /// What the ball has seen of each mesh.
+    around: Vec<Surroundings>,
     radius: f64,
     mesh_radius: f64,
 }
@@ -143,8 +162,15 @@ impl<'a> Obstacles<'a> {
                 if heading < 0.0 { Side::Negative } else { Side::Positive }
             })
         };
-        let sides = plan.planes.iter().map(|(_, plane)| side(plane)).collect();
-        Self { plan, sides, radius, mesh_radius: radius.max(plan.point_radius) }
+        let facing = |(surface, plane): &(usize, carom_geometry::plane::Plane)| {
+            let normal = plane.normal().into_inner() * side(plane).sign();
+            FacingPlane { surface: *surface, normal, point: plane.point() }
+        };
+        let planes = plan.planes.iter().map(facing).collect();
+        let mesh_radius = radius.max(plan.point_radius);
+        let extent = plan.farthest + state.position.coords.amax() + mesh_radius;
+        let around = vec![Surroundings::new(extent); plan.meshes.len()];
+        Self { plan, planes, around, radius, mesh_radius }
     }
 
     /// The radius with which the ball meets the surface.
@@ -154,7 +180,7 @@ impl<'a> Obstacles<'a> {
 
     /// When the path of `step` returns to each of `contacts`; never to a lasting one, along which it moves.
     pub fn returns(&self, step: &Step, contacts: &[Contact], counters: &mut Counters) -> Returns {
-        let slack = touch_distance(step.path.start().coords.amax().max(self.radius), 0.0);
+        let slack = touch_distance(amax(&step.path.start().coords).max(self.radius), 0.0);
         contacts
             .iter()
             .map(|contact| {
@@ -183,7 +209,7 @@ impl<'a> Obstacles<'a> {
     fn anchor(&self, contact: &Contact) -> Point3<f64> {
         match (contact.site, self.mesh(contact.surface)) {
             (Some(site), Some(mesh)) => mesh.anchor(site),
-            _ => self.plan.planes.iter().find(|(s, _)| *s == contact.surface).map_or(Point3::origin(), |p| p.1.point()),
+            _ => self.planes.iter().find(|p| p.surface == contact.surface).map_or(Point3::origin(), |p| p.point),
         }
     }
 
@@ -235,7 +261,7 @@ impl<'a> Obstacles<'a> {
 
     /// The earliest collision of the step: over all surfaces, the smallest f at which the clearance is <= 0 and falling.
     pub fn earliest(
-        &self,
+        &mut self,
         step: &Step,
         contacts: &[Contact],
         returns: &Returns,
@@ -247,28 +273,27 @@ impl<'a> Obstacles<'a> {
             than.is_none_or(|hit| f < hit.f || (f == hit.f && rank(surface) < rank(hit.surface)))
         };
         let mut earliest: Option<Hit> = None;
-        for ((surface, plane), side) in self.plan.planes.iter().zip(&self.sides) {
-            let known = contacts.iter().position(|c| c.surface == *surface);
+        for facing in &self.planes {
+            let surface = facing.surface;
+            let known = contacts.iter().position(|c| c.surface == surface);
             let entry = match known {
                 Some(i) => returns[i].entry,
                 None => {
                     counters.clearances += 1;
-                    let gap = plane.clearance(&step.path.start(), self.radius, *side);
-                    let normal = plane.normal().into_inner() * side.sign();
-                    step.path.clearance(gap, &normal).first_entry(0.0, step.to)
+                    let gap = facing.clearance(&step.path.start(), self.radius);
+                    step.path.clearance(gap, &facing.normal).first_entry(0.0, step.to)
                 }
             };
             if let Entry::At { f, rate } = entry
-                && earlier(f, *surface, &earliest)
+                && earlier(f, surface, &earliest)
             {
-                earliest = Some(Hit { f, surface: *surface, face: None, rate: Some(rate) });
+                earliest = Some(Hit { f, surface, face: None, rate: Some(rate) });
             }
         }
-        for (surface, mesh) in &self.plan.meshes {
+        for ((surface, mesh), around) in self.plan.meshes.iter().zip(&mut self.around) {
             let here =
                 |r: &Return| r.hold.face.filter(|_| r.free.as_ref().is_some_and(|free| free.surface == *surface));
-            let holds: ArrayVec<Hold, MAX_CONTACTS> =
-                returns.iter().map(|r| Hold { face: here(r), ..r.hold }).collect();
+            let holds: PerContact<Hold> = returns.iter().map(|r| Hold { face: here(r), ..r.hold }).collect();
             let ball = MovingBall { path: &step.path, radius: self.mesh_radius, holds: &holds };
             let to = earliest.map_or(step.to, |hit| hit.f);
             let mut work = Work::default();
@@ -279,7 +304,7 @@ impl<'a> Obstacles<'a> {
                     .map(|free| free.until(*surface, mesh, face))
                     .fold(0.0, f64::max)
             };
-            let found = mesh.first_contact(&ball, to, free_until, &mut work);
+            let found = mesh.first_contact_around(&ball, to, free_until, around, &mut work);
             counters.add(&work);
             if let Some(found) = found
                 && earlier(found.f, *surface, &earliest)
@@ -298,7 +323,8 @@ impl<'a> Obstacles<'a> {
         contact_doubt(size + step.path.reach(hit.f))
     }
 
-    /// The contacts of a ball at `position` with `velocity`, to within `tolerance` (m), each with its rate n.v.
+    /// The contacts of a ball at `position` with `velocity`, to within `tolerance` (m), each with its rate n.v. If that is where it is at
+    /// `f` of the step that the [`earliest`](Self::earliest) hit was asked for, they need not be looked for again.
     ///
     /// Of contacts whose normals are one to within what the tolerance makes of them, the one that closes fastest stays.
     pub fn touching(
@@ -306,6 +332,7 @@ impl<'a> Obstacles<'a> {
         position: &Point3<f64>,
         velocity: &Vector3<f64>,
         tolerance: f64,
+        f: Option<f64>,
         counters: &mut Counters,
     ) -> Contacts {
         let contact = |surface, site, normal: Vector3<f64>| Contact {
@@ -315,18 +342,25 @@ impl<'a> Obstacles<'a> {
             rate: normal.dot(velocity),
             lasting: false,
         };
-        let mut all: SmallVec<[Contact; MAX_CONTACTS]> = SmallVec::new();
-        for ((surface, plane), side) in self.plan.planes.iter().zip(&self.sides) {
-            if plane.clearance(position, self.radius, *side) <= tolerance {
-                all.push(contact(*surface, None, plane.normal().into_inner() * side.sign()));
+        let mut all = Contacts::new();
+        for facing in &self.planes {
+            if facing.clearance(position, self.radius) <= tolerance {
+                all.push(contact(facing.surface, None, facing.normal));
             }
         }
-        for (surface, mesh) in &self.plan.meshes {
+        for ((surface, mesh), around) in self.plan.meshes.iter().zip(&self.around) {
             let mut work = Work::default();
-            for touch in mesh.touches(position, velocity, self.mesh_radius, tolerance, &mut work) {
+            let touches = match f {
+                Some(f) => mesh.touches_at(f, around, position, velocity, self.mesh_radius, tolerance, &mut work),
+                None => mesh.touches(position, velocity, self.mesh_radius, tolerance, &mut work),
+            };
+            for touch in touches {
                 all.push(contact(*surface, Some(touch.site), touch.normal));
             }
             counters.add(&work);
+        }
+        if all.len() == 1 {
+            return all;
         }
         all.sort_by(|a, b| a.rate.total_cmp(&b.rate).then_with(|| self.order(a, b)));
         let mut contacts = Contacts::new();
@@ -338,7 +372,7 @@ impl<'a> Obstacles<'a> {
                 let angle = merge_angle_squared(tolerance, radius);
                 (kept.normal - c.normal).norm_squared() <= angle
             };
-            if !contacts.is_full() && !contacts.iter().any(same) {
+            if contacts.len() < MAX_CONTACTS && !contacts.iter().any(same) {
                 contacts.push(c);
             }
         }
@@ -361,8 +395,8 @@ impl<'a> Obstacles<'a> {
                 Some((position - foot).norm() - self.mesh_radius)
             }
             None => {
-                let i = self.plan.planes.iter().position(|(surface, _)| *surface == contact.surface)?;
-                Some(self.plan.planes[i].1.clearance(position, self.radius, self.sides[i]))
+                let facing = self.planes.iter().find(|p| p.surface == contact.surface)?;
+                Some(facing.clearance(position, self.radius))
             }
         }
     }

@@ -27,6 +27,7 @@ use crate::plan::{Plan, PlannedSurface};
 use crate::tolerance::{
     EVENT_BUDGET, FARTHEST, MAX_STANDSTILL, ROLLING_TOLERANCE, SLIDING_TOLERANCE, STEP_BUDGET, time_resolution,
 };
+use carom_geometry::bounds::amax;
 use nalgebra::Vector3;
 use spin::Slip;
 
@@ -212,7 +213,7 @@ impl<O: Observer> Walk<'_, O> {
 
     /// Whether `step` is none because a number in it is not finite, or because the ball is out of range; ends its simulation if so.
     fn diverges(&mut self, step: &Step) -> bool {
-        let reached = self.state.position.coords.amax().max(self.state.velocity.amax());
+        let reached = amax(&self.state.position.coords).max(amax(&self.state.velocity));
         let diverges = !step.is_finite() || reached > FARTHEST;
         if diverges {
             self.give_up(Ending::Diverged, EventKind::Diverged);

@@ -5,7 +5,7 @@
 //! pair.
 
 use crate::body::State;
-use crate::contacts::Contact;
+use crate::contacts::{Contact, PerContact};
 use crate::counters::Counters;
 use crate::effects::friction::ContactFriction;
 use crate::forces::Forces;
@@ -72,7 +72,7 @@ pub struct Balance {
 impl Balance {
     /// Balances the acceleration `a` on `carriers` for a ball in `state`.
     pub fn of(a: &Vector3<f64>, carriers: &[Carrier], state: &State) -> Self {
-        let normals: Vec<Vector3<f64>> = carriers.iter().map(|c| c.normal(&state.position)).collect();
+        let normals: PerContact<Vector3<f64>> = carriers.iter().map(|c| c.normal(&state.position)).collect();
         let loads = project_offset(a, &normals, |i| carriers[i].centripetal(&state.velocity));
         let (mut friction, mut sticks) = (0.0, false);
         for (i, load) in loads.loads() {

@@ -124,9 +124,9 @@ pub(crate) fn largest(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// The largest |component| of a vector of numbers.
+/// The largest |component| of a vector, none of them NaN.
 #[inline]
-pub(crate) fn amax(v: &Vector3<f64>) -> f64 {
+pub fn amax(v: &Vector3<f64>) -> f64 {
     largest(largest(v.x.abs(), v.y.abs()), v.z.abs())
 }
 
