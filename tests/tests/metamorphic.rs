@@ -12,8 +12,6 @@ const STAIRS: &str = include_str!("../../crates/app/scenes/meshes/stairs.obj");
 const TERRAIN: &str = include_str!("../../crates/app/scenes/meshes/bullet_terrain.obj");
 const BUNNY: &str = include_str!("../../crates/app/scenes/meshes/low_poly_bunny.obj");
 
-const BUNNY_FACES: usize = 696;
-
 /// A scene on a mesh, in plain numbers so that every one of them can be changed.
 #[derive(Clone)]
 struct Case {
@@ -174,15 +172,7 @@ fn r12_doubled_and_shuffled_faces_change_no_bit() {
         let mut shuffled = case.clone();
         shuffled.faces.reverse();
         let shuffled = shuffled.run();
-        if case.faces.len() == BUNNY_FACES {
-            // FIXME: where a ball is put back onto an edge differs by some ulp with the face that owns the edge.
-            let labels = |run: &Run| -> Vec<_> { run.trajectory.events.iter().map(|e| (e.kind, e.surface)).collect() };
-            same(&labels(&shuffled), &labels(&right), || format!("case {i}, reversed"));
-            let (a, b) = (shuffled.outcome.state, right.outcome.state);
-            assert!((a.position - b.position).norm() < 1e-6, "case {i}, reversed: {a:?} {b:?}");
-        } else {
-            same(&faceless(&shuffled), &faceless(&right), || format!("case {i}, reversed"));
-        }
+        same(&faceless(&shuffled), &faceless(&right), || format!("case {i}, reversed"));
         let mut first = case.stage();
         first.0.surfaces.reverse();
         let swapped = first.run();

@@ -34,14 +34,14 @@ fn the_shares_of_the_families_are_the_whole() {
 #[test]
 fn h5_what_is_shot_at_edges_from_inside_stays_inside() {
     for closed in Closed::all() {
-        // Not yet so for two treatments: of a body squashed to a millionth, a few points in a thousand get out along its edges and a few slides
-        // in a hundred are ended by a guard; so are a few balls in a hundred in a body of 2^-300 m. Nothing stalls there either.
-        let ends = !matches!(closed.treatment, Treatment::Squashed | Treatment::Tiny);
+        // Not yet so for squashed bodies: of their millionfold flattened wedges, one slide in some thousand is ended by a guard or never ends.
+        let ends = closed.treatment != Treatment::Squashed;
         for shot in SHOTS {
-            let tally = shoot(&closed, shot, if ends { 24 } else { 4 }, 1);
-            assert_eq!(tally.stalled, 0, "{} {:?}: {tally:#?}", closed.body, closed.treatment);
-            assert!(tally.is_sound() || !ends, "{} {:?}: {tally:#?}", closed.body, closed.treatment);
-            assert!(shot.ball || !ends || tally.met > 0, "{} {:?}: {tally:#?}", closed.body, closed.treatment);
+            let tally = shoot(&closed, shot, if ends { 24 } else { 8 }, 1);
+            let name = || format!("{} {:?}: {tally:#?}", closed.body, closed.treatment);
+            assert_eq!(tally.outside + tally.missed, 0, "{}", name());
+            assert!(tally.is_sound() || (!ends && tally.guarded + tally.stalled <= 1), "{}", name());
+            assert!(shot.ball || !ends || tally.met > 0, "{}", name());
         }
     }
 }

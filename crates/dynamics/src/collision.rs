@@ -9,12 +9,14 @@ use crate::tolerance::{merge_angle_squared, rate_rounding, touch_distance};
 use carom_geometry::bounds::amax;
 use carom_geometry::clearance::{Clearance, Entry};
 use carom_geometry::contact::{Hold, MovingBall};
-use carom_geometry::mesh::Fold;
+use carom_geometry::mesh::{Fold, Mesh};
 use carom_geometry::plane::Side;
 use carom_geometry::rounding::contact_doubt;
 use carom_geometry::site::{Bend, RegionBound, Site};
 use carom_geometry::sweep::{Surroundings, Work};
 use nalgebra::{Point3, Vector3};
+use smallvec::SmallVec;
+use std::cmp::Ordering;
 
 /// The earliest collision of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,8 +38,32 @@ pub struct Return {
     hold: Hold,
     /// Where, and at what slope.
     pub entry: Entry,
-    /// Where on a mesh the contact is, and the f before which the ball cannot touch the faces there again.
-    free: Option<(usize, Site, f64)>,
+    /// What that says of the faces of a mesh that the contact is on.
+    free: Option<Free>,
+}
+
+/// Until when a ball that leaves a place of a mesh cannot touch the faces there again.
+#[derive(Debug, Clone)]
+struct Free {
+    surface: usize,
+    site: Site,
+    /// Until here none of them, whatever the way.
+    all: f64,
+    /// Until here none whose nearest part is still the place.
+    here: f64,
+    /// Where other places become the nearest part of their faces.
+    exits: SmallVec<[(Site, f64); 4]>,
+}
+
+impl Free {
+    /// The f before which the ball does not touch `face` of `surface`, which is `mesh`.
+    fn until(&self, surface: usize, mesh: &Mesh, face: u32) -> f64 {
+        if surface != self.surface || !mesh.is_at(face, self.site) {
+            return 0.0;
+        }
+        let exits = self.exits.iter().filter(|(next, _)| mesh.is_at(face, *next));
+        exits.map(|(_, f)| *f).fold(self.here, f64::min).max(self.all)
+    }
 }
 
 /// The returns of one step, one for each contact.
@@ -84,6 +110,13 @@ fn leaves_until(step: &Step, bend: Bend, radius: f64, slope: f64) -> f64 {
     };
     let further = term(2).norm() + term(3).norm();
     if further == 0.0 { until } else { until.min((gain / (8.0 * radius * further)).max(0.0)) }
+}
+
+/// Where the step, after `from`, crosses a bound of the region of a place.
+fn leaves_region(step: &Step, bound: &RegionBound, from: f64) -> Entry {
+    let inward = -bound.outward;
+    let gap = inward.dot(&(step.path.start() - bound.point));
+    step.path.clearance(gap, &inward).first_entry(from, step.to)
 }
 
 /// A plane as seen from the side on which a ball is.
@@ -160,23 +193,16 @@ impl<'a> Obstacles<'a> {
                 };
                 if contact.lasting {
                     let until = f64::INFINITY;
-                    return Return { hold: hold(until), entry: Entry::Never, free: self.free(contact, until) };
+                    return Return { hold: hold(until), entry: Entry::Never, free: self.free(contact, until, None) };
                 }
                 counters.clearances += 1;
                 let entry = leaving(step, contact).first_entry(0.0, step.to);
                 let until = entry.f().unwrap_or(f64::INFINITY);
                 let curved = self.bend(contact) != Bend::Flat && contact.rate >= 0.0;
-                let free = if curved { self.leaves_until(step, contact, counters).max(until) } else { until };
-                Return { hold: hold(until), entry, free: self.free(contact, free) }
+                let free = self.free(contact, until, curved.then_some((step, counters)));
+                Return { hold: hold(until), entry, free }
             })
             .collect()
-    }
-
-    /// Until when a ball that leaves an edge or vertex touches none of the faces there: until it comes back to it, or
-    /// enters the region of one of them.
-    fn leaves_until(&self, step: &Step, contact: &Contact, counters: &mut Counters) -> f64 {
-        let exit = self.exit(step, contact, 0.0, counters).map_or(f64::INFINITY, |(f, _)| f);
-        leaves_until(step, self.bend(contact), self.radius_at(contact), leaving(step, contact).rate(0.0)).min(exit)
     }
 
     /// A point of what is touched.
@@ -187,9 +213,22 @@ impl<'a> Obstacles<'a> {
         }
     }
 
-    /// The place of a mesh that is touched, with the f until which the ball is free of its faces.
-    fn free(&self, contact: &Contact, until: f64) -> Option<(usize, Site, f64)> {
-        Some((contact.surface, contact.site?, until))
+    /// Until when a ball that returns to the plane of `contact` at `until` is free of the faces there; if it leaves an edge or vertex along `leaves`,
+    /// until it comes back to that, or to where another part of a face is nearer.
+    fn free(&self, contact: &Contact, until: f64, leaves: Option<(&Step, &mut Counters)>) -> Option<Free> {
+        let (surface, site) = (contact.surface, contact.site?);
+        let mut free = Free { surface, site, all: until, here: until, exits: SmallVec::new() };
+        if let Some((step, counters)) = leaves {
+            let slope = leaving(step, contact).rate(0.0);
+            free.here = leaves_until(step, self.bend(contact), self.radius_at(contact), slope);
+            for bound in self.mesh(surface)?.region(site) {
+                counters.clearances += 1;
+                if let Entry::At { f, .. } = leaves_region(step, &bound, 0.0) {
+                    free.exits.push((bound.next, f));
+                }
+            }
+        }
+        Some(free)
     }
 
     /// The shape that the centre follows along a contact.
@@ -211,9 +250,7 @@ impl<'a> Obstacles<'a> {
         let mut first: Option<(f64, RegionBound)> = None;
         for bound in self.mesh(contact.surface)?.region(contact.site?) {
             counters.clearances += 1;
-            let inward = -bound.outward;
-            let gap = inward.dot(&(step.path.start() - bound.point));
-            if let Entry::At { f, .. } = step.path.clearance(gap, &inward).first_entry(from, step.to)
+            if let Entry::At { f, .. } = leaves_region(step, &bound, from)
                 && first.is_none_or(|(best, _)| f < best)
             {
                 first = Some((f, bound));
@@ -254,14 +291,18 @@ impl<'a> Obstacles<'a> {
             }
         }
         for ((surface, mesh), around) in self.plan.meshes.iter().zip(&mut self.around) {
-            let here = |r: &Return| r.hold.face.filter(|_| r.free.is_some_and(|(s, ..)| s == *surface));
+            let here =
+                |r: &Return| r.hold.face.filter(|_| r.free.as_ref().is_some_and(|free| free.surface == *surface));
             let holds: PerContact<Hold> = returns.iter().map(|r| Hold { face: here(r), ..r.hold }).collect();
             let ball = MovingBall { path: &step.path, radius: self.mesh_radius, holds: &holds };
             let to = earliest.map_or(step.to, |hit| hit.f);
             let mut work = Work::default();
             let free_until = |face: u32| {
-                let of_this = returns.iter().filter_map(|r| r.free.as_ref()).filter(|(s, ..)| s == surface);
-                of_this.filter(|(_, site, _)| mesh.is_at(face, *site)).map(|(.., f)| *f).fold(0.0, f64::max)
+                returns
+                    .iter()
+                    .filter_map(|r| r.free.as_ref())
+                    .map(|free| free.until(*surface, mesh, face))
+                    .fold(0.0, f64::max)
             };
             let found = mesh.first_contact_around(&ball, to, free_until, around, &mut work);
             counters.add(&work);
@@ -321,8 +362,7 @@ impl<'a> Obstacles<'a> {
         if all.len() == 1 {
             return all;
         }
-        let rank = |c: &Contact| (self.plan.surfaces[c.surface].rank, c.site);
-        all.sort_by(|a, b| a.rate.total_cmp(&b.rate).then_with(|| rank(a).cmp(&rank(b))));
+        all.sort_by(|a, b| a.rate.total_cmp(&b.rate).then_with(|| self.order(a, b)));
         let mut contacts = Contacts::new();
         for c in all {
             let same = |kept: &Contact| {
@@ -336,8 +376,15 @@ impl<'a> Obstacles<'a> {
                 contacts.push(c);
             }
         }
-        contacts.sort_by_key(rank);
+        contacts.sort_by(|a, b| self.order(a, b));
         contacts
+    }
+
+    /// The order of contacts: by what they are and not by how they are numbered, so that the order of surfaces and faces does not matter.
+    pub fn order(&self, a: &Contact, b: &Contact) -> Ordering {
+        let rank = |c: &Contact| self.plan.surfaces[c.surface].rank;
+        let normals = a.normal.iter().zip(b.normal.iter()).map(|(a, b)| a.total_cmp(b));
+        rank(a).cmp(&rank(b)).then(normals.fold(Ordering::Equal, Ordering::then)).then_with(|| a.site.cmp(&b.site))
     }
 
     /// The distance that is left between the ball at `position` and what it is in contact with.
@@ -375,7 +422,7 @@ impl<'a> Obstacles<'a> {
     }
 
     /// The mesh that `surface` is, if it is one.
-    pub fn mesh(&self, surface: usize) -> Option<&'a carom_geometry::mesh::Mesh> {
+    pub fn mesh(&self, surface: usize) -> Option<&'a Mesh> {
         self.plan.meshes.iter().find(|(s, _)| *s == surface).map(|(_, mesh)| mesh.as_ref())
     }
 }

@@ -9,7 +9,7 @@ use nalgebra::{Point3, Vector3};
 ///
 /// ```
 /// use carom_geometry::bounds::Aabb;
-/// use nalgebra::{Point3, Vector3};
+/// use carom_geometry::nalgebra::{Point3, Vector3};
 ///
 /// let bounds = Aabb::of_points(&[Point3::origin(), Point3::new(2.0, 4.0, 6.0)]);
 /// assert_eq!((bounds.extent(), bounds.centre()), (Vector3::new(2.0, 4.0, 6.0), Point3::new(1.0, 2.0, 3.0)));

@@ -9,6 +9,7 @@
 use crate::bounds::{amax, largest};
 use crate::clearance::Entry;
 use crate::closest::{Asked, Feature};
+use crate::normal::unit;
 use crate::path::Path;
 use crate::rounding::{UNIT_ROUNDOFF, contact_bound, hold_bound};
 use nalgebra::{Point3, Vector3};
@@ -89,9 +90,9 @@ impl MovingBall<'_> {
 ///
 /// ```
 /// use carom_geometry::contact::{Contact, MovingBall, first_contact};
+/// use carom_geometry::nalgebra::{Point3, Vector3};
 /// use carom_geometry::path::Path;
 /// use carom_geometry::triangle::Feature;
-/// use nalgebra::{Point3, Vector3};
 ///
 /// let triangle = [Point3::origin(), Point3::new(4.0, 0.0, 0.0), Point3::new(0.0, 4.0, 0.0)];
 /// let falling = |x: f64| Path::line(Point3::new(x, 1.0, 3.0), Vector3::new(0.0, 0.0, -4.0));
@@ -163,18 +164,21 @@ pub(crate) fn contact_from(ball: &MovingBall, asked: &Asked, from: f64, to: f64,
             return Contact::Miss;
         }
         *rounds += 1;
-        let support = Support::at(ball, asked, f);
+        let support = Support::near(ball, asked, f, 2.0 * bound_at(f));
         let plane = path.clearance(support.gap, &support.normal);
         let (height, falling) = (plane.at(f), plane.rate(f) < 0.0);
         if height <= 2.0 * bound_at(f) && falling {
-            return Contact::At { feature: support.feature, f: polish(ball, asked, support, f, end, rounds) };
+            return Contact::At {
+                feature: support.feature,
+                f: polish(ball, asked, support, f, end, bound_at(f), rounds),
+            };
         }
         let (entry, bound) = meets(support.gap, &support.normal, f);
         let Entry::At { f: next, .. } = entry else {
             return Contact::Miss;
         };
         if (height <= 2.0 * bound && falling) || next - f <= 2.0 * UNIT_ROUNDOFF * f {
-            return Contact::At { feature: support.feature, f: polish(ball, asked, support, f, end, rounds) };
+            return Contact::At { feature: support.feature, f: polish(ball, asked, support, f, end, bound, rounds) };
         }
         f = next;
     }
@@ -213,6 +217,23 @@ impl Support {
         let gap = -farthest_along(corners, &normal) - ball.radius;
         Self { normal, gap, feature: closest.feature }
     }
+
+    /// The plane that faces the ball at `f`; where the ball touches the border of the triangle to within `bound`, the better of that and the face's own.
+    ///
+    /// For a ball that is small beside the triangle, the direction to the border is rounding: a plane that it turns towards the face has that in
+    /// front, and tells nothing; one that it turns away closes in on a ball that rises from the face.
+    fn near(ball: &MovingBall, asked: &Asked, f: f64, bound: f64) -> Self {
+        let support = Self::at(ball, asked, f);
+        let plane = ball.path.clearance(support.gap, &support.normal);
+        let height = plane.at(f);
+        if support.feature == Feature::Face || height > bound {
+            return support;
+        }
+        let Some((gap, normal)) = face_plane(asked, ball, f) else { return support };
+        let face = ball.path.clearance(gap, &normal);
+        let better = face.at(f) >= -bound && (height < -bound || face.rate(f) >= 0.0);
+        if better { Self { gap, normal, ..support } } else { support }
+    }
 }
 
 /// How far the triangle reaches along `normal`, from the start of the path.
@@ -227,7 +248,7 @@ const MAX_POLISH: u32 = 8;
 /// From `f`, where the ball touches to within the bound, to where it touches: support planes again, now where they are. The triangle
 /// is behind them all the same, so this ends at the contact to the rounding of the planes: on a face at once, at an edge or a vertex in
 /// a step or two of Newton's method.
-fn polish(ball: &MovingBall, asked: &Asked, support: Support, f: f64, to: f64, rounds: &mut u64) -> f64 {
+fn polish(ball: &MovingBall, asked: &Asked, support: Support, f: f64, to: f64, bound: f64, rounds: &mut u64) -> f64 {
     let (mut f, mut support) = (f, support);
     for _ in 0..MAX_POLISH {
         let Entry::At { f: next, .. } = ball.path.clearance(support.gap, &support.normal).first_entry(f, to) else {
@@ -239,7 +260,7 @@ fn polish(ball: &MovingBall, asked: &Asked, support: Support, f: f64, to: f64, r
             break;
         }
         *rounds += 1;
-        support = Support::at(ball, asked, f);
+        support = Support::near(ball, asked, f, 2.0 * bound);
     }
     f
 }
@@ -247,10 +268,9 @@ fn polish(ball: &MovingBall, asked: &Asked, support: Support, f: f64, to: f64, r
 /// Where to look when the centre lies on the triangle: across the face, to the side the ball moves to.
 fn escape_direction(corners: &[Vector3<f64>; 3], path: &Path, f: f64) -> Vector3<f64> {
     let [a, b, c] = corners;
-    let across = (b - a).cross(&(c - a));
+    let across = unit(&(b - a).cross(&(c - a)));
     let velocity = path.derivative(f);
-    let direction = if across.norm() > 0.0 { across } else { velocity };
-    match direction.try_normalize(0.0) {
+    match across.or_else(|| unit(&velocity)).map(|n| n.into_inner()) {
         Some(n) if n.dot(&velocity) < 0.0 => -n,
         Some(n) => n,
         None => Vector3::x(),

@@ -112,10 +112,10 @@ pub struct Edge {
 /// ```
 /// use carom_geometry::contact::MovingBall;
 /// use carom_geometry::mesh::Mesh;
+/// use carom_geometry::nalgebra::{Point3, Vector3};
 /// use carom_geometry::path::Path;
 /// use carom_geometry::rounding::SEGMENT_FRACTION_BOUND;
 /// use carom_geometry::sweep::Work;
-/// use nalgebra::{Point3, Vector3};
 ///
 /// // A tetrahedron: four vertices, four faces that turn counter-clockwise seen from outside.
 /// let vertices = vec![Point3::origin(), Point3::new(1.0, 0.0, 0.0), Point3::new(0.0, 1.0, 0.0), Point3::new(0.0, 0.0, 1.0)];

@@ -9,9 +9,9 @@ use nalgebra::Point3;
 /// Whether a segment meets a triangle, and where first.
 ///
 /// ```
+/// use carom_geometry::nalgebra::Point3;
 /// use carom_geometry::segment::{SegmentHit, segment_hits_triangle};
 /// use carom_geometry::triangle::Feature;
-/// use nalgebra::Point3;
 ///
 /// let triangle = [Point3::origin(), Point3::new(4.0, 0.0, 0.0), Point3::new(0.0, 4.0, 0.0)];
 /// let down = |x, y| segment_hits_triangle(&Point3::new(x, y, 1.0), &Point3::new(x, y, -1.0), &triangle);

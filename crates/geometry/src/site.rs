@@ -1,5 +1,7 @@
 //! The places of a mesh, its faces, edges and vertices, and how far each carries a ball.
 
+mod cone;
+
 use crate::closest::Feature;
 use crate::mesh::{Fold, Mesh};
 use nalgebra::{Point3, Vector3};
@@ -174,27 +176,30 @@ impl Mesh {
         }
     }
 
-    /// A point of `site`.
+    /// A point of `site`: the same with whichever vertex a face begins, and whichever face an edge is named by.
     pub fn anchor(&self, site: Site) -> Point3<f64> {
         match site {
-            Site::Face(face) => self.triangle(face)[0],
-            Site::Edge { face, edge } => self.triangle(face)[edge as usize],
+            Site::Face(face) => self.vertices()[self.lowest_vertex(face) as usize],
+            Site::Edge { face, edge } => self.vertices()[self.edge_ends(face, edge)[0] as usize],
             Site::Vertex { vertex, .. } => self.vertices()[vertex as usize],
         }
     }
 
+    fn lowest_vertex(&self, face: u32) -> u32 {
+        let [a, b, c] = self.faces()[face as usize];
+        a.min(b).min(c)
+    }
+
     /// Where `site` is nearest to `centre`, taken as an infinite plane or line, and the unit normal from there to `centre`.
-    /// None where the centre lies on it.
+    /// None where the centre lies on it. At an edge or vertex the normal is in the cone of those that a ball nearest to it can have.
     pub fn foot(&self, site: Site, centre: &Point3<f64>) -> Option<(Point3<f64>, Vector3<f64>)> {
         let Some(away) = self.bend(site).away_from(centre) else {
             let face = site.face();
-            // From the lowest of its vertices: the same bits with whichever of them the face begins.
-            let [a, b, c] = self.faces()[face as usize];
-            let (n, point) = (self.normal(face)?.into_inner(), self.vertices()[a.min(b).min(c) as usize]);
+            let (n, point) = (self.normal(face)?.into_inner(), self.anchor(site));
             let height = n.dot(&(centre - point));
             return Some((centre - n * height, if height < 0.0 { -n } else { n }));
         };
-        away.try_normalize(0.0).map(|n| (centre - away, n))
+        self.cone_normal(site, &away).map(|n| (centre - away, n))
     }
 }
 

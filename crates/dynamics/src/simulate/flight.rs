@@ -190,7 +190,7 @@ impl<O: Observer> Walk<'_, O> {
                 contacts.push(Contact { rate: a.normal.dot(&self.state.velocity), lasting: false, ..*a });
             }
         }
-        contacts.sort_by_key(|c| (self.surfaces[c.surface].rank, c.site));
+        contacts.sort_by(|a, b| self.obstacles.order(a, b));
         true
     }
 

@@ -7,6 +7,7 @@ use crate::contacts::{Contact, Contacts, PerContact};
 use crate::events::{EventKind, Motion};
 use crate::integrators::{Step, exact};
 use crate::observer::Observer;
+use crate::response::changed_rate;
 use crate::sliding::{Balance, Carrier, Slide, is_lifted, slide, tangential};
 use crate::support::along;
 use crate::tolerance::{RestThresholds, SLIDING_TOLERANCE, parallel, rate_rounding};
@@ -36,10 +37,14 @@ impl<O: Observer> Walk<'_, O> {
             .collect()
     }
 
-    /// Takes from the velocity what would leave or enter a lasting contact.
+    /// Takes from the velocity what would leave or enter a lasting contact; the others learn what that changes.
     pub(super) fn make_tangential(&mut self) {
         let lasting: PerContact<Vector3<f64>> = self.contacts.iter().filter(|c| c.lasting).map(|c| c.normal).collect();
-        self.state.velocity = along(&lasting, self.state.velocity);
+        let before = self.state.velocity;
+        self.state.velocity = along(&lasting, before);
+        for contact in self.contacts.iter_mut().filter(|c| !c.lasting) {
+            contact.rate = changed_rate(contact, &before, &self.state.velocity);
+        }
     }
 
     /// Takes off from `left`, which carried it so far, if anything did.
@@ -323,8 +328,11 @@ impl<O: Observer> Walk<'_, O> {
         let Some(contact) = self.contacts.iter_mut().filter(|c| c.lasting).nth(contact) else { return };
         let foot = self.obstacles.mesh(contact.surface).and_then(|m| m.foot(bound.next, &self.state.position));
         if let Some((_, normal)) = foot {
+            // From a face to its border the normal is the same, and known better than from where the ball is.
+            let keeps =
+                matches!((contact.site, bound.next), (Some(Site::Face(_)), Site::Edge { .. } | Site::Vertex { .. }));
+            contact.normal = if keeps { contact.normal } else { normal };
             contact.site = Some(bound.next);
-            contact.normal = normal;
         }
         if self.motion == Motion::Sliding {
             self.make_tangential();

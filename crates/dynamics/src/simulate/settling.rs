@@ -76,9 +76,6 @@ impl<O: Observer> Walk<'_, O> {
             }
         }
         self.make_tangential();
-        for contact in self.contacts.iter_mut().filter(|c| !c.lasting) {
-            contact.rate = changed_rate(contact, &before, &self.state.velocity);
-        }
         self.motion = Motion::Sliding;
         self.halvings = 0;
         match settling {

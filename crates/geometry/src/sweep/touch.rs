@@ -102,14 +102,9 @@ impl Mesh {
 
     /// The normal at a touched site: the face's own on a face and on a flat edge, else from the touched point to the centre.
     fn normal_at(&self, site: Site, away: &Vector3<f64>) -> Option<Vector3<f64>> {
-        let facing = |face: u32| {
-            let n = self.normal(face)?.into_inner();
-            Some(if n.dot(away) < 0.0 { -n } else { n })
-        };
         match site {
-            Site::Face(face) => facing(face),
-            Site::Edge { face, edge } if self.fold(face, edge.into()) == Fold::Flat => facing(face),
-            _ => away.try_normalize(0.0).or_else(|| facing(site.face())),
+            Site::Edge { face, edge } if self.fold(face, edge.into()) == Fold::Flat => self.facing(face, away),
+            _ => self.cone_normal(site, away).or_else(|| self.facing(site.face(), away)),
         }
     }
 }
