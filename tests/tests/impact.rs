@@ -57,13 +57,14 @@ fn r02_detection_determination_and_response_one_after_the_other() {
     assert_eq!((before, after), (1.0, -0.5));
 
     // Determination: when, and where.
-    let obstacles = Obstacles::new(&plan, 0.25, &start, &plan.constant_acceleration(&plan.balls()[0]));
+    let mut obstacles = Obstacles::new(&plan, 0.25, &start, &plan.constant_acceleration(&plan.balls()[0]));
     let none = Contacts::new();
     let returns = obstacles.returns(&step, &none, &mut counters);
     let hit = obstacles.earliest(&step, &none, &returns, &mut counters).unwrap();
     assert_eq!((hit.f, hit.surface), (before / (before - after), 0));
     let there = step.at(hit.f);
-    let mut touched = obstacles.touching(&there.position, &there.velocity, touch_distance(1.25, 1.5), &mut counters);
+    let mut touched =
+        obstacles.touching(&there.position, &there.velocity, touch_distance(1.25, 1.5), None, &mut counters);
     assert_eq!(touched.len(), 1);
 
     // Response: which velocity.

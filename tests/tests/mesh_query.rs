@@ -4,9 +4,9 @@ use carom_geometry::closest::{Feature, closest_point};
 use carom_geometry::contact::{Contact, MovingBall, first_contact};
 use carom_geometry::mesh::Mesh;
 use carom_geometry::path::Path;
-use carom_geometry::rounding::{UNIT_ROUNDOFF, point_radius};
+use carom_geometry::rounding::{UNIT_ROUNDOFF, contact_doubt, point_radius};
 use carom_geometry::site::Site;
-use carom_geometry::sweep::{FirstContact, Work};
+use carom_geometry::sweep::{FirstContact, Surroundings, Work};
 use carom_tests::obj;
 use carom_tests::random::Random;
 use nalgebra::{Point3, Vector3};
@@ -62,15 +62,28 @@ struct Tally {
     hits: u32,
     /// Hits at which two faces or more are met at the very same f.
     ties: u32,
+    /// Hits at which something is found to be touched.
+    touches: u32,
 }
 
 impl Tally {
-    /// Asks both ways and fails on the first bit that differs.
+    /// Asks both ways and fails on the first bit that differs; and what is touched there, of what the search has left and of the tree.
     fn compare(&mut self, mesh: &Mesh, path: &Path, radius: f64, to: f64) {
         let ball = MovingBall { path, radius, holds: &[] };
         let (want, ties) = brute_force(mesh, &ball, to);
-        let got = mesh.first_contact(&ball, to, |_| 0.0, &mut Work::default());
+        let extent = mesh.bounds().extent().amax() + path.start().coords.amax() + radius;
+        let (mut around, mut work) = (Surroundings::new(extent), Work::default());
+        let got = mesh.first_contact_around(&ball, to, |_| 0.0, &mut around, &mut work);
         assert_eq!(got, want, "r = {radius:e}, to {to}, {path:?}");
+        if let Some(FirstContact { f, .. }) = got {
+            let (centre, heading, tolerance) = (path.at(f), path.derivative(f), contact_doubt(extent));
+            let nodes = work.nodes;
+            let known = mesh.touches_at(f, &around, &centre, &heading, radius, tolerance, &mut work);
+            assert_eq!(work.nodes, nodes, "the tree is not asked again");
+            let all = mesh.touches(&centre, &heading, radius, tolerance, &mut work);
+            assert_eq!(known, all, "r = {radius:e}, to {to}, {path:?}");
+            self.touches += u32::from(!all.is_empty());
+        }
         self.cases += 1;
         self.hits += u32::from(want.is_some());
         self.ties += u32::from(ties > 1);
@@ -95,6 +108,7 @@ fn h06_first_contacts_with_the_scene_meshes_are_those_of_brute_force() {
             }
             println!("{name}, degree {degree}: {tally:?}");
             assert!(tally.hits * 3 > tally.cases, "too few hits prove little: {tally:?}");
+            assert!(tally.touches * 20 > tally.hits * 19, "a hit is a touch: {tally:?}");
         }
     }
 }

@@ -42,11 +42,12 @@ fn h10_of_surfaces_met_at_once_the_first_by_name_is_hit() {
             .fold(Stage::new(1.0), |stage, name| stage.plane(name, smooth(1.0), [0.0, 0.0, 0.0], Vector3::z()));
         let plan = floors.ball([0.0, 0.0, 2.0], [0.0; 3], RADIUS).plan();
         let (step, mut counters) = (line([0.0, 0.0, 1.0], [0.0, 0.0, -1.0]), Counters::default());
-        let at = obstacles(&plan, &step);
-        let hit = at.earliest(&step, &[], &at.returns(&step, &[], &mut counters), &mut counters).unwrap();
+        let mut at = obstacles(&plan, &step);
+        let returns = at.returns(&step, &[], &mut counters);
+        let hit = at.earliest(&step, &[], &returns, &mut counters).unwrap();
         assert_eq!((hit.f, hit.surface, hit.rate, counters.clearances), (0.5, first, Some(-1.0), 2));
         // Known contacts are asked when they are entered again, and not once more.
-        let touching = at.touching(&Point3::new(0.0, 0.0, 0.5), &Vector3::z(), 0.0, &mut counters);
+        let touching = at.touching(&Point3::new(0.0, 0.0, 0.5), &Vector3::z(), 0.0, None, &mut counters);
         at.returns(&step, &touching, &mut counters);
         assert_eq!((touching.len(), counters.clearances), (1, 3), "one normal is one contact");
     }
@@ -79,8 +80,9 @@ fn the_doubt_of_a_hit_grows_with_its_face_and_the_way_to_it() {
     let (vertices, faces) = solids::cube();
     let plan = stage(vertices, faces);
     let (step, mut counters) = (line([0.5, -0.5, 3.0], [0.0, 0.0, -2.0]), Counters::default());
-    let at = obstacles(&plan, &step);
-    let hit = at.earliest(&step, &[], &at.returns(&step, &[], &mut counters), &mut counters).unwrap();
+    let mut at = obstacles(&plan, &step);
+    let returns = at.returns(&step, &[], &mut counters);
+    let hit = at.earliest(&step, &[], &returns, &mut counters).unwrap();
     assert_eq!((hit.f, hit.face), (0.75, Some(2)));
     // The farthest coordinate of the face from the start is 2, and the way is 1.5.
     assert_eq!(at.doubt(&step, &hit), contact_doubt(3.5));

@@ -1,32 +1,31 @@
-//! `cargo xtask peers` and `cargo xtask scaling`: building what measures, and running it.
+//! `cargo xtask peers` and `cargo xtask scaling`: building what measures, running it, and keeping what it says.
 
 use crate::Result;
+use crate::kept::Kept;
 use crate::project::Project;
-use std::process::{Command, ExitCode};
+use std::process::ExitCode;
+
+/// What the same work takes others, as measured last.
+pub const PEERS: Kept = Kept { file: "benches/peers.md", rows: 6, command: "peers" };
+
+/// How time and memory grow, as measured last.
+pub const SCALING: Kept = Kept { file: "benches/scaling.md", rows: 6, command: "scaling" };
+
+/// The chart of it.
+const CHART: &str = "docs/scaling.svg";
 
 /// Times the same work by Carom and by others; they are a workspace of their own, which nothing else builds.
 pub fn peers() -> Result<ExitCode> {
     let project = Project::find()?;
     let mut command = project.cargo(["run", "--release", "--manifest-path", "peers/Cargo.toml"]);
     // Its own folder, whatever is set for ours: nothing is built twice by turns.
-    run(command.env_remove("CARGO_TARGET_DIR"))
+    PEERS.measure(&project, command.env_remove("CARGO_TARGET_DIR"))
 }
 
 /// Times runs of growing size.
 pub fn scaling() -> Result<ExitCode> {
     let project = Project::find()?;
-    run(&mut project.cargo([
-        "run",
-        "--release",
-        "--package",
-        "carom-benches",
-        "--features",
-        "charts",
-        "--bin",
-        "scaling",
-    ]))
-}
-
-fn run(command: &mut Command) -> Result<ExitCode> {
-    Ok(if command.status()?.success() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    let program =
+        ["run", "--release", "--package", "carom-benches", "--features", "charts", "--bin", "scaling", "--", CHART];
+    SCALING.measure(&project, &mut project.cargo(program))
 }

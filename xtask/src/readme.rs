@@ -1,7 +1,7 @@
 //! The generated blocks of the README: `cargo xtask readme` writes them, and `verify` compares them.
 
 use crate::project::{Carom, Project, output};
-use crate::{Result, accuracy, blocks, certification, conformance};
+use crate::{Result, accuracy, blocks, certification, conformance, measure};
 use std::fs;
 use std::process::ExitCode;
 
@@ -69,7 +69,9 @@ fn make(project: &Project, carom: &Carom, name: &str) -> Result<String> {
         ("outputs", "") => outputs(carom),
         ("crates", "") => crates(project),
         ("accuracy", "") => accuracy::block(project),
-        ("certification", "") => certification::block(project),
+        ("certification", "") => certification::TABLE.block(project),
+        ("peers", "") => measure::PEERS.block(project),
+        ("scaling", "") => measure::SCALING.block(project),
         ("conformance", "") => conformance::block(project),
         ("example", package) => example(project, package),
         ("file", path) => Ok(fenced(path.rsplit('.').next().unwrap_or_default(), &project.read(path)?)),

@@ -19,7 +19,7 @@ pub const SOLID_SPHERE: f64 = 0.4;
 ///
 /// ```
 /// use carom_dynamics::body::Ball;
-/// use nalgebra::{Point3, Vector3};
+/// use carom_dynamics::nalgebra::{Point3, Vector3};
 ///
 /// // A tennis ball 1 m up, at 20 m/s with topspin: its mass is needed only by effects that divide a force by it.
 /// let ball = Ball::new(Point3::new(0.0, 0.0, 1.0), Vector3::new(20.0, 0.0, 0.0), 0.0335, Some(0.0577))?;

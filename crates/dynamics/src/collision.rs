@@ -1,21 +1,24 @@
 //! Collision detection and determination: the earliest f over all surfaces, and what is touched there.
 
+mod returning;
+
+pub use returning::{Return, Returns};
+
 use crate::body::State;
-use crate::contacts::{Contact, Contacts, MAX_CONTACTS};
+use crate::contacts::{Contact, Contacts, MAX_CONTACTS, PerContact};
 use crate::counters::Counters;
 use crate::integrators::Step;
 use crate::plan::Plan;
-use crate::tolerance::{merge_angle_squared, rate_rounding, touch_distance};
-use arrayvec::ArrayVec;
-use carom_geometry::clearance::{Clearance, Entry};
+use crate::tolerance::{merge_angle_squared, rate_rounding};
+use carom_geometry::clearance::Entry;
 use carom_geometry::contact::{Hold, MovingBall};
 use carom_geometry::mesh::{Fold, Mesh};
 use carom_geometry::plane::Side;
 use carom_geometry::rounding::contact_doubt;
 use carom_geometry::site::{Bend, RegionBound, Site};
-use carom_geometry::sweep::Work;
+use carom_geometry::sweep::{Surroundings, Work};
 use nalgebra::{Point3, Vector3};
-use smallvec::SmallVec;
+use returning::leaves_region;
 use std::cmp::Ordering;
 
 /// The earliest collision of a step.
@@ -31,100 +34,31 @@ pub struct Hit {
     pub rate: Option<f64>,
 }
 
-/// When a contact that the ball has is entered again: clearance 0 at the start, changing with its exact rate.
-#[derive(Debug, Clone)]
-pub struct Return {
-    /// For the mesh queries.
-    hold: Hold,
-    /// Where, and at what slope.
-    pub entry: Entry,
-    /// What that says of the faces of a mesh that the contact is on.
-    free: Option<Free>,
-}
-
-/// Until when a ball that leaves a place of a mesh cannot touch the faces there again.
-#[derive(Debug, Clone)]
-struct Free {
+/// A plane as seen from the side on which a ball is.
+#[derive(Debug, Clone, Copy)]
+struct FacingPlane {
     surface: usize,
-    site: Site,
-    /// Until here none of them, whatever the way.
-    all: f64,
-    /// Until here none whose nearest part is still the place.
-    here: f64,
-    /// Where other places become the nearest part of their faces.
-    exits: SmallVec<[(Site, f64); 4]>,
+    /// The unit normal towards the ball.
+    normal: Vector3<f64>,
+    point: Point3<f64>,
 }
 
-impl Free {
-    /// The f before which the ball does not touch `face` of `surface`, which is `mesh`.
-    fn until(&self, surface: usize, mesh: &Mesh, face: u32) -> f64 {
-        if surface != self.surface || !mesh.is_at(face, self.site) {
-            return 0.0;
-        }
-        let exits = self.exits.iter().filter(|(next, _)| mesh.is_at(face, *next));
-        exits.map(|(_, f)| *f).fold(self.here, f64::min).max(self.all)
+impl FacingPlane {
+    /// [`Plane::clearance`](carom_geometry::plane::Plane::clearance) from that side, bit for bit.
+    #[inline]
+    fn clearance(&self, x: &Point3<f64>, radius: f64) -> f64 {
+        self.normal.dot(&(x - self.point)) - radius
     }
-}
-
-/// The returns of one step, one for each contact.
-pub type Returns = ArrayVec<Return, MAX_CONTACTS>;
-
-/// The clearance from a contact along the step: 0 now by definition, and its slope the contact's own rate (plus what a path that
-/// does not begin with the velocity adds).
-fn leaving(step: &Step, contact: &Contact) -> Clearance {
-    let mut c = [0.0; 5];
-    // What the ball moves along, it leaves or enters by more than rounding or not at all.
-    let along = contact.rate == 0.0;
-    let part = |v: &Vector3<f64>, of: f64| {
-        let part = contact.normal.dot(v);
-        if along && part.abs() <= rate_rounding(of) { 0.0 } else { part }
-    };
-    for (k, term) in step.path.terms().iter().enumerate() {
-        c[k + 1] = part(term, term.norm());
-    }
-    if let Some(first) = step.path.terms().first() {
-        let kick = first - step.velocity[0] * step.seconds;
-        c[1] = contact.rate * step.seconds + part(&kick, first.norm());
-    }
-    Clearance::new(c)
-}
-
-/// The f up to which the path cannot come back to the edge or vertex, bent as `bend`, that it leaves from distance `radius`
-/// with the slope `slope` of its clearance.
-///
-/// For a parabola |w(f)|^2 - r^2, with w the part across the edge, is a quartic, solved like any clearance. A path of higher degree follows
-/// its parabola closely enough while its further terms take less than a quarter of what the distance gains.
-fn leaves_until(step: &Step, bend: Bend, radius: f64, slope: f64) -> f64 {
-    let zero = Vector3::zeros();
-    let term = |k: usize| step.path.terms().get(k).copied().unwrap_or(zero);
-    let away = bend.away_from(&step.path.start()).and_then(|away| away.try_normalize(0.0));
-    let Some(w) = away.map(|n| n * radius) else { return 0.0 };
-    let (b, c) = (bend.across(&term(0)), bend.across(&term(1)));
-    // The ball touches: the term of order 0 is zero, and that of order 1 is known from the contact.
-    let leaving = 2.0 * radius * slope;
-    let gain = b.norm_squared() + 2.0 * w.dot(&c);
-    let squared = Clearance::new([0.0, leaving, gain, 2.0 * b.dot(&c), c.norm_squared()]);
-    let until = match squared.first_entry(0.0, step.to) {
-        Entry::Never => f64::INFINITY,
-        Entry::At { f, .. } => f,
-    };
-    let further = term(2).norm() + term(3).norm();
-    if further == 0.0 { until } else { until.min((gain / (8.0 * radius * further)).max(0.0)) }
-}
-
-/// Where the step, after `from`, crosses a bound of the region of a place.
-fn leaves_region(step: &Step, bound: &RegionBound, from: f64) -> Entry {
-    let inward = -bound.outward;
-    let gap = inward.dot(&(step.path.start() - bound.point));
-    step.path.clearance(gap, &inward).first_entry(from, step.to)
 }
 
 /// One ball among the surfaces of a plan.
 #[derive(Debug, Clone)]
 pub struct Obstacles<'a> {
     plan: &'a Plan,
-    /// On which side of each plane the ball is: decided once, and never again.
-    sides: Vec<Side>,
+    /// The planes from the side on which the ball is: decided once, and never again.
+    planes: Vec<FacingPlane>,
+    /// What the ball has seen of each mesh.
+    around: Vec<Surroundings>,
     radius: f64,
     mesh_radius: f64,
 }
@@ -143,66 +77,20 @@ impl<'a> Obstacles<'a> {
                 if heading < 0.0 { Side::Negative } else { Side::Positive }
             })
         };
-        let sides = plan.planes.iter().map(|(_, plane)| side(plane)).collect();
-        Self { plan, sides, radius, mesh_radius: radius.max(plan.point_radius) }
+        let facing = |(surface, plane): &(usize, carom_geometry::plane::Plane)| {
+            let normal = plane.normal().into_inner() * side(plane).sign();
+            FacingPlane { surface: *surface, normal, point: plane.point() }
+        };
+        let planes = plan.planes.iter().map(facing).collect();
+        let mesh_radius = radius.max(plan.point_radius);
+        let extent = plan.farthest + state.position.coords.amax() + mesh_radius;
+        let around = vec![Surroundings::new(extent); plan.meshes.len()];
+        Self { plan, planes, around, radius, mesh_radius }
     }
 
     /// The radius with which the ball meets the surface.
     pub fn radius_at(&self, contact: &Contact) -> f64 {
         if contact.site.is_some() { self.mesh_radius } else { self.radius }
-    }
-
-    /// When the path of `step` returns to each of `contacts`; never to a lasting one, along which it moves.
-    pub fn returns(&self, step: &Step, contacts: &[Contact], counters: &mut Counters) -> Returns {
-        let slack = touch_distance(step.path.start().coords.amax().max(self.radius), 0.0);
-        contacts
-            .iter()
-            .map(|contact| {
-                let hold = |until| Hold {
-                    normal: contact.normal,
-                    point: self.anchor(contact),
-                    slack,
-                    until,
-                    face: contact.site.map(|site| site.face()),
-                };
-                if contact.lasting {
-                    let until = f64::INFINITY;
-                    return Return { hold: hold(until), entry: Entry::Never, free: self.free(contact, until, None) };
-                }
-                counters.clearances += 1;
-                let entry = leaving(step, contact).first_entry(0.0, step.to);
-                let until = entry.f().unwrap_or(f64::INFINITY);
-                let curved = self.bend(contact) != Bend::Flat && contact.rate >= 0.0;
-                let free = self.free(contact, until, curved.then_some((step, counters)));
-                Return { hold: hold(until), entry, free }
-            })
-            .collect()
-    }
-
-    /// A point of what is touched.
-    fn anchor(&self, contact: &Contact) -> Point3<f64> {
-        match (contact.site, self.mesh(contact.surface)) {
-            (Some(site), Some(mesh)) => mesh.anchor(site),
-            _ => self.plan.planes.iter().find(|(s, _)| *s == contact.surface).map_or(Point3::origin(), |p| p.1.point()),
-        }
-    }
-
-    /// Until when a ball that returns to the plane of `contact` at `until` is free of the faces there; if it leaves an edge or vertex along `leaves`,
-    /// until it comes back to that, or to where another part of a face is nearer.
-    fn free(&self, contact: &Contact, until: f64, leaves: Option<(&Step, &mut Counters)>) -> Option<Free> {
-        let (surface, site) = (contact.surface, contact.site?);
-        let mut free = Free { surface, site, all: until, here: until, exits: SmallVec::new() };
-        if let Some((step, counters)) = leaves {
-            let slope = leaving(step, contact).rate(0.0);
-            free.here = leaves_until(step, self.bend(contact), self.radius_at(contact), slope);
-            for bound in self.mesh(surface)?.region(site) {
-                counters.clearances += 1;
-                if let Entry::At { f, .. } = leaves_region(step, &bound, 0.0) {
-                    free.exits.push((bound.next, f));
-                }
-            }
-        }
-        Some(free)
     }
 
     /// The shape that the centre follows along a contact.
@@ -235,7 +123,7 @@ impl<'a> Obstacles<'a> {
 
     /// The earliest collision of the step: over all surfaces, the smallest f at which the clearance is <= 0 and falling.
     pub fn earliest(
-        &self,
+        &mut self,
         step: &Step,
         contacts: &[Contact],
         returns: &Returns,
@@ -247,28 +135,27 @@ impl<'a> Obstacles<'a> {
             than.is_none_or(|hit| f < hit.f || (f == hit.f && rank(surface) < rank(hit.surface)))
         };
         let mut earliest: Option<Hit> = None;
-        for ((surface, plane), side) in self.plan.planes.iter().zip(&self.sides) {
-            let known = contacts.iter().position(|c| c.surface == *surface);
+        for facing in &self.planes {
+            let surface = facing.surface;
+            let known = contacts.iter().position(|c| c.surface == surface);
             let entry = match known {
                 Some(i) => returns[i].entry,
                 None => {
                     counters.clearances += 1;
-                    let gap = plane.clearance(&step.path.start(), self.radius, *side);
-                    let normal = plane.normal().into_inner() * side.sign();
-                    step.path.clearance(gap, &normal).first_entry(0.0, step.to)
+                    let gap = facing.clearance(&step.path.start(), self.radius);
+                    step.path.clearance(gap, &facing.normal).first_entry(0.0, step.to)
                 }
             };
             if let Entry::At { f, rate } = entry
-                && earlier(f, *surface, &earliest)
+                && earlier(f, surface, &earliest)
             {
-                earliest = Some(Hit { f, surface: *surface, face: None, rate: Some(rate) });
+                earliest = Some(Hit { f, surface, face: None, rate: Some(rate) });
             }
         }
-        for (surface, mesh) in &self.plan.meshes {
+        for ((surface, mesh), around) in self.plan.meshes.iter().zip(&mut self.around) {
             let here =
                 |r: &Return| r.hold.face.filter(|_| r.free.as_ref().is_some_and(|free| free.surface == *surface));
-            let holds: ArrayVec<Hold, MAX_CONTACTS> =
-                returns.iter().map(|r| Hold { face: here(r), ..r.hold }).collect();
+            let holds: PerContact<Hold> = returns.iter().map(|r| Hold { face: here(r), ..r.hold }).collect();
             let ball = MovingBall { path: &step.path, radius: self.mesh_radius, holds: &holds };
             let to = earliest.map_or(step.to, |hit| hit.f);
             let mut work = Work::default();
@@ -279,7 +166,7 @@ impl<'a> Obstacles<'a> {
                     .map(|free| free.until(*surface, mesh, face))
                     .fold(0.0, f64::max)
             };
-            let found = mesh.first_contact(&ball, to, free_until, &mut work);
+            let found = mesh.first_contact_around(&ball, to, free_until, around, &mut work);
             counters.add(&work);
             if let Some(found) = found
                 && earlier(found.f, *surface, &earliest)
@@ -298,7 +185,8 @@ impl<'a> Obstacles<'a> {
         contact_doubt(size + step.path.reach(hit.f))
     }
 
-    /// The contacts of a ball at `position` with `velocity`, to within `tolerance` (m), each with its rate n.v.
+    /// The contacts of a ball at `position` with `velocity`, to within `tolerance` (m), each with its rate n.v. If that is where it is at
+    /// `f` of the step that the [`earliest`](Self::earliest) hit was asked for, they need not be looked for again.
     ///
     /// Of contacts whose normals are one to within what the tolerance makes of them, the one that closes fastest stays.
     pub fn touching(
@@ -306,6 +194,7 @@ impl<'a> Obstacles<'a> {
         position: &Point3<f64>,
         velocity: &Vector3<f64>,
         tolerance: f64,
+        f: Option<f64>,
         counters: &mut Counters,
     ) -> Contacts {
         let contact = |surface, site, normal: Vector3<f64>| Contact {
@@ -315,18 +204,25 @@ impl<'a> Obstacles<'a> {
             rate: normal.dot(velocity),
             lasting: false,
         };
-        let mut all: SmallVec<[Contact; MAX_CONTACTS]> = SmallVec::new();
-        for ((surface, plane), side) in self.plan.planes.iter().zip(&self.sides) {
-            if plane.clearance(position, self.radius, *side) <= tolerance {
-                all.push(contact(*surface, None, plane.normal().into_inner() * side.sign()));
+        let mut all = Contacts::new();
+        for facing in &self.planes {
+            if facing.clearance(position, self.radius) <= tolerance {
+                all.push(contact(facing.surface, None, facing.normal));
             }
         }
-        for (surface, mesh) in &self.plan.meshes {
+        for ((surface, mesh), around) in self.plan.meshes.iter().zip(&self.around) {
             let mut work = Work::default();
-            for touch in mesh.touches(position, velocity, self.mesh_radius, tolerance, &mut work) {
+            let touches = match f {
+                Some(f) => mesh.touches_at(f, around, position, velocity, self.mesh_radius, tolerance, &mut work),
+                None => mesh.touches(position, velocity, self.mesh_radius, tolerance, &mut work),
+            };
+            for touch in touches {
                 all.push(contact(*surface, Some(touch.site), touch.normal));
             }
             counters.add(&work);
+        }
+        if all.len() == 1 {
+            return all;
         }
         all.sort_by(|a, b| a.rate.total_cmp(&b.rate).then_with(|| self.order(a, b)));
         let mut contacts = Contacts::new();
@@ -338,7 +234,7 @@ impl<'a> Obstacles<'a> {
                 let angle = merge_angle_squared(tolerance, radius);
                 (kept.normal - c.normal).norm_squared() <= angle
             };
-            if !contacts.is_full() && !contacts.iter().any(same) {
+            if contacts.len() < MAX_CONTACTS && !contacts.iter().any(same) {
                 contacts.push(c);
             }
         }
@@ -361,8 +257,8 @@ impl<'a> Obstacles<'a> {
                 Some((position - foot).norm() - self.mesh_radius)
             }
             None => {
-                let i = self.plan.planes.iter().position(|(surface, _)| *surface == contact.surface)?;
-                Some(self.plan.planes[i].1.clearance(position, self.radius, self.sides[i]))
+                let facing = self.planes.iter().find(|p| p.surface == contact.surface)?;
+                Some(facing.clearance(position, self.radius))
             }
         }
     }

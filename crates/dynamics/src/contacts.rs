@@ -1,8 +1,8 @@
 //! What a ball touches: surfaces with their normals, and how fast it leaves them.
 
-use arrayvec::ArrayVec;
 use carom_geometry::site::Site;
 use nalgebra::Vector3;
+use smallvec::SmallVec;
 
 /// More contacts than this at one instant never change the answer: three normals carry any load.
 pub const MAX_CONTACTS: usize = 8;
@@ -23,5 +23,9 @@ pub struct Contact {
     pub lasting: bool,
 }
 
-/// The contacts of one instant, in an order that does not depend on the order of the surfaces.
-pub type Contacts = ArrayVec<Contact, MAX_CONTACTS>;
+/// Something for each contact of one instant: of one contact, which is the rule, it is moved in a few instructions, and of two it asks for no
+/// memory.
+pub type PerContact<T> = SmallVec<[T; 2]>;
+
+/// The contacts of one instant, [`MAX_CONTACTS`] at most, in an order that does not depend on the order of the surfaces.
+pub type Contacts = PerContact<Contact>;

@@ -31,7 +31,7 @@ pub fn potential(state: &State, gravity: Option<Gravity>) -> f64 {
 /// use carom_dynamics::body::State;
 /// use carom_dynamics::effects::gravity::Gravity;
 /// use carom_dynamics::energy::EnergyBalance;
-/// use nalgebra::{Point3, Vector3};
+/// use carom_dynamics::nalgebra::{Point3, Vector3};
 ///
 /// // 2 kg fall 4 m under g = 8 m/s^2 and lie still.
 /// let mut balance = EnergyBalance::new(Some(Gravity::uniform(Vector3::new(0.0, 0.0, -8.0))?));

@@ -4,10 +4,10 @@
 //! use carom_dynamics::body::Ball;
 //! use carom_dynamics::effects::{friction::Friction, gravity::Gravity, restitution::Restitution};
 //! use carom_dynamics::explain::{Quantity, effect::Effect, explain};
+//! use carom_dynamics::geometry::plane::Plane;
+//! use carom_dynamics::nalgebra::{Point3, Vector3};
 //! use carom_dynamics::scene::Scene;
 //! use carom_dynamics::surface::{Material, Shape, Surface};
-//! use carom_geometry::plane::Plane;
-//! use nalgebra::{Point3, Vector3};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! // A tennis ball falls 2.54 m onto concrete. Does the air matter?

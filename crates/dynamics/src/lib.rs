@@ -26,13 +26,13 @@
 //! ```
 //! use carom_dynamics::body::Ball;
 //! use carom_dynamics::effects::{friction::Friction, gravity::Gravity, restitution::Restitution};
+//! use carom_dynamics::geometry::plane::Plane;
+//! use carom_dynamics::nalgebra::{Point3, Vector3};
 //! use carom_dynamics::observer::Trajectory;
 //! use carom_dynamics::plan::Plan;
 //! use carom_dynamics::scene::Scene;
 //! use carom_dynamics::simulate::simulate;
 //! use carom_dynamics::surface::{Material, Shape, Surface};
-//! use carom_geometry::plane::Plane;
-//! use nalgebra::{Point3, Vector3};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let clay = Material { restitution: Restitution::new(0.5)?, friction: Friction::None };
@@ -70,7 +70,6 @@ pub use nalgebra;
 pub mod error;
 pub mod tolerance;
 pub mod power;
-pub mod rotation;
 pub mod counters;
 pub mod body;
 pub mod effects;
@@ -87,6 +86,7 @@ pub mod collision;
 pub mod support;
 pub mod response;
 pub mod sliding;
+pub mod turning;
 pub mod observer;
 pub mod simulate;
 pub mod run;

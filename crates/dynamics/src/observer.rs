@@ -1,14 +1,10 @@
 //! What a simulation shows while it runs: events, and the stretches of motion between them.
 
 use crate::body::State;
-use crate::effects::spin_decay::SpinDecay;
 use crate::events::{Event, Motion};
 use crate::integrators::Step;
-use crate::rotation::rotation;
+use crate::turning::Turning;
 use nalgebra::{UnitQuaternion, Vector3};
-
-/// More steps than this do not follow an axis any better than the eye does.
-const MOST_STEPS: f64 = 4096.0;
 
 /// A stretch of motion without an event inside.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,56 +21,6 @@ pub struct Segment {
     pub motion: Motion,
     /// How it turns, if the scene calls for it.
     pub turning: Option<Turning>,
-}
-
-/// The angular velocity during a stretch of motion: it decays, or changes evenly.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Turning {
-    /// At the start, in rad/s.
-    pub from: Vector3<f64>,
-    /// At the end, in rad/s, but for its decay.
-    pub to: Vector3<f64>,
-    /// How it decays, if it does.
-    pub decay: Option<SpinDecay>,
-}
-
-impl Turning {
-    /// The angular velocity in rad/s after `seconds` of the `whole` (s).
-    pub fn at(&self, seconds: f64, whole: f64) -> Vector3<f64> {
-        match self.decay {
-            Some(decay) => decay.after(&self.from, seconds),
-            None if self.from == self.to || whole <= 0.0 => self.to,
-            None => self.from + (self.to - self.from) * (seconds / whole).clamp(0.0, 1.0),
-        }
-    }
-
-    /// How the ball has turned after `seconds` of the `whole` (s), in the axes of the scene.
-    ///
-    /// Exact where the axis stands still, as it does in flight and where a ball slips or rolls straight on. An axis that turns evenly is followed in
-    /// steps of less than half a radian by the first two terms of Magnus's series (W. Magnus, *On the exponential solution of differential
-    /// equations for a linear operator*, 1954): the mean of the angular velocity, and (end x start) t^2 / 12.
-    pub fn rotation(&self, seconds: f64, whole: f64) -> UnitQuaternion<f64> {
-        if let Some(decay) = self.decay {
-            return rotation(&(self.from * decay.lasting(seconds)));
-        }
-        let now = self.at(seconds, whole);
-        let steps = Self::steps(&self.from, &now, seconds);
-        let step = seconds / f64::from(steps);
-        let at = |k: u32| self.from + (now - self.from) * (f64::from(k) / f64::from(steps));
-        (0..steps).fold(UnitQuaternion::identity(), |turned, k| {
-            let (before, after) = (at(k), at(k + 1));
-            let turn = (before + after) * (0.5 * step) + after.cross(&before) * (step * step / 12.0);
-            rotation(&turn) * turned
-        })
-    }
-
-    /// In how many steps an axis is followed that turns from one angular velocity to the other: one where it does not.
-    fn steps(from: &Vector3<f64>, to: &Vector3<f64>, seconds: f64) -> u32 {
-        let turn = from.norm().max(to.norm()) * seconds;
-        let twist = from.cross(to).norm() * seconds * seconds;
-        // Of a twist that is small, the series leaves its share of the square of the turn.
-        (8.0 * twist.sqrt()).min(2.0 * turn).ceil().clamp(1.0, MOST_STEPS) as u32
-    }
 }
 
 impl Segment {
@@ -101,10 +47,10 @@ impl Segment {
 /// ```
 /// # use carom_dynamics::body::Ball;
 /// # use carom_dynamics::effects::{friction::Friction, gravity::Gravity, restitution::Restitution};
+/// # use carom_dynamics::geometry::plane::Plane;
+/// # use carom_dynamics::nalgebra::{Point3, Vector3};
 /// # use carom_dynamics::scene::Scene;
 /// # use carom_dynamics::surface::{Material, Shape, Surface};
-/// # use carom_geometry::plane::Plane;
-/// # use nalgebra::{Point3, Vector3};
 /// # let floor = Plane::from_point_normal(Point3::origin(), Vector3::z())?;
 /// # let material = Material { restitution: Restitution::new(0.5)?, friction: Friction::None };
 /// # let scene = Scene {
@@ -156,6 +102,17 @@ impl Observer for () {
     fn segment(&mut self, _: &Segment) {}
 }
 
+/// A watcher that is kept elsewhere, or is not known by its type: `&mut dyn Observer` watches too.
+impl<O: Observer + ?Sized> Observer for &mut O {
+    fn event(&mut self, event: &Event) {
+        (**self).event(event);
+    }
+
+    fn segment(&mut self, segment: &Segment) {
+        (**self).segment(segment);
+    }
+}
+
 /// Two watchers side by side.
 impl<A: Observer, B: Observer> Observer for (A, B) {
     fn event(&mut self, event: &Event) {
@@ -189,10 +146,10 @@ impl<A: Observer> Observer for Option<A> {
 /// ```
 /// # use carom_dynamics::body::Ball;
 /// # use carom_dynamics::effects::{friction::Friction, gravity::Gravity, restitution::Restitution};
+/// # use carom_dynamics::geometry::plane::Plane;
+/// # use carom_dynamics::nalgebra::{Point3, Vector3};
 /// # use carom_dynamics::scene::Scene;
 /// # use carom_dynamics::surface::{Material, Shape, Surface};
-/// # use carom_geometry::plane::Plane;
-/// # use nalgebra::{Point3, Vector3};
 /// # let floor = Plane::from_point_normal(Point3::origin(), Vector3::z())?;
 /// # let material = Material { restitution: Restitution::new(0.5)?, friction: Friction::None };
 /// # let scene = Scene {
@@ -269,10 +226,10 @@ pub struct Frame {
 /// ```
 /// # use carom_dynamics::body::Ball;
 /// # use carom_dynamics::effects::{friction::Friction, gravity::Gravity, restitution::Restitution};
+/// # use carom_dynamics::geometry::plane::Plane;
+/// # use carom_dynamics::nalgebra::{Point3, Vector3};
 /// # use carom_dynamics::scene::Scene;
 /// # use carom_dynamics::surface::{Material, Shape, Surface};
-/// # use carom_geometry::plane::Plane;
-/// # use nalgebra::{Point3, Vector3};
 /// # let floor = Plane::from_point_normal(Point3::origin(), Vector3::z())?;
 /// # let material = Material { restitution: Restitution::new(0.5)?, friction: Friction::None };
 /// # let scene = Scene {
@@ -326,33 +283,5 @@ impl Observer for FrameSampler {
             let (state, spin) = (segment.at(time), segment.spin_at(time));
             self.frames.push(Frame { time, state, motion: segment.motion, spin });
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_axis_that_turns_is_followed() {
-        let (from, to) = (Vector3::new(-60.0, -60.0, 0.0), Vector3::new(-17.0, 18.0, 5.0));
-        let turning = Turning { from, to, decay: None };
-        // By brute force: a million steps about the axis in the middle of each.
-        const STEPS: u32 = 1 << 20;
-        let step = 0.5 / f64::from(STEPS);
-        let turn = |q, k: u32| rotation(&(turning.at((f64::from(k) + 0.5) * step, 0.5) * step)) * q;
-        let right = (0..STEPS).fold(UnitQuaternion::identity(), turn);
-        assert!(turning.rotation(0.5, 0.5).angle_to(&right) < 1e-3);
-        // In two parts it is the same.
-        let rest = Turning { from: turning.at(0.2, 0.5), ..turning };
-        let parts = rest.rotation(0.3, 0.3) * turning.rotation(0.2, 0.5);
-        assert!(parts.angle_to(&right) < 1e-3);
-    }
-
-    #[test]
-    fn an_axis_that_stands_still_is_exact() {
-        let turning = Turning { from: Vector3::new(0.0, 10.0, 0.0), to: Vector3::new(0.0, 30.0, 0.0), decay: None };
-        let right = rotation(&Vector3::new(0.0, 40.0, 0.0));
-        assert!(turning.rotation(2.0, 2.0).angle_to(&right) < 1e-13);
     }
 }

@@ -29,10 +29,10 @@ use std::sync::Arc;
 /// ```
 /// # use carom_dynamics::body::Ball;
 /// # use carom_dynamics::effects::{friction::Friction, gravity::Gravity, restitution::Restitution};
+/// # use carom_dynamics::geometry::plane::Plane;
+/// # use carom_dynamics::nalgebra::{Point3, Vector3};
 /// # use carom_dynamics::scene::Scene;
 /// # use carom_dynamics::surface::{Material, Shape, Surface};
-/// # use carom_geometry::plane::Plane;
-/// # use nalgebra::{Point3, Vector3};
 /// # let floor = Plane::from_point_normal(Point3::origin(), Vector3::z())?;
 /// # let material = Material { restitution: Restitution::new(0.5)?, friction: Friction::None };
 /// # let scene = Scene {

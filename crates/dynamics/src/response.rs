@@ -5,7 +5,7 @@
 //! along each normal the place of v_n; for one surface that is the chapter's law to the letter. (J. J. Moreau, in *Nonsmooth
 //! Mechanics and Applications*, 1988.)
 
-use crate::contacts::Contact;
+use crate::contacts::{Contact, PerContact};
 use crate::counters::Counters;
 use crate::effects::friction::Friction;
 use crate::support::project;
@@ -81,7 +81,7 @@ fn respond_to_all(
     let mut v = v;
     for repeat in 0..=MAX_REPEATS {
         let speed = v.norm();
-        let normals: Vec<_> = contacts.iter().map(|c| c.normal).collect();
+        let normals: PerContact<_> = contacts.iter().map(|c| c.normal).collect();
         let projection = project(&v, &normals);
         let bounces = repeat < MAX_REPEATS;
         let mut after = projection.velocity;
@@ -134,7 +134,7 @@ fn collapse_in_between(i: usize, j: usize, contacts: &[Contact], materials: &[Ma
 ///
 /// (Inelastic collapse: a point in a wedge narrower than cos(angle) = 2 sqrt(c_r) / (1 + c_r) hits its sides without end.)
 pub fn collapse(v: Vector3<f64>, contacts: &mut [Contact]) -> Vector3<f64> {
-    let normals: Vec<_> = contacts.iter().map(|c| c.normal).collect();
+    let normals: PerContact<_> = contacts.iter().map(|c| c.normal).collect();
     let after = project(&v, &normals).velocity;
     let rounding = rate_rounding(v.norm());
     for contact in contacts {

@@ -16,10 +16,10 @@ use nalgebra::Vector3;
 /// ```
 /// use carom_dynamics::body::Ball;
 /// use carom_dynamics::effects::gravity::Gravity;
+/// use carom_dynamics::nalgebra::{Point3, Vector3};
 /// use carom_dynamics::plan::Plan;
 /// use carom_dynamics::scene::{Method, Scene};
 /// use carom_dynamics::simulate::simulate;
-/// use nalgebra::{Point3, Vector3};
 ///
 /// // The chapter's Euler method falls too far by g h t / 2, whatever else is right.
 /// let fall = |method| {
@@ -63,10 +63,10 @@ pub enum Method {
 /// ```
 /// use carom_dynamics::body::Ball;
 /// use carom_dynamics::effects::{drag::Drag, friction::Friction, gravity::Gravity, restitution::Restitution};
+/// use carom_dynamics::geometry::plane::Plane;
+/// use carom_dynamics::nalgebra::{Point3, Vector3};
 /// use carom_dynamics::scene::{Method, Scene};
 /// use carom_dynamics::surface::{Material, Shape, Surface};
-/// use carom_geometry::plane::Plane;
-/// use nalgebra::{Point3, Vector3};
 ///
 /// let floor = Plane::from_point_normal(Point3::origin(), Vector3::z())?;
 /// let clay = Material { restitution: Restitution::new(0.75)?, friction: Friction::coulomb(0.6)? };

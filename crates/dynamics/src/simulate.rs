@@ -27,6 +27,7 @@ use crate::plan::{Plan, PlannedSurface};
 use crate::tolerance::{
     EVENT_BUDGET, FARTHEST, MAX_STANDSTILL, ROLLING_TOLERANCE, SLIDING_TOLERANCE, STEP_BUDGET, time_resolution,
 };
+use carom_geometry::bounds::amax;
 use nalgebra::Vector3;
 use spin::Slip;
 
@@ -35,10 +36,10 @@ use spin::Slip;
 /// ```
 /// # use carom_dynamics::body::Ball;
 /// # use carom_dynamics::effects::{friction::Friction, gravity::Gravity, restitution::Restitution};
+/// # use carom_dynamics::geometry::plane::Plane;
+/// # use carom_dynamics::nalgebra::{Point3, Vector3};
 /// # use carom_dynamics::scene::Scene;
 /// # use carom_dynamics::surface::{Material, Shape, Surface};
-/// # use carom_geometry::plane::Plane;
-/// # use nalgebra::{Point3, Vector3};
 /// # let floor = Plane::from_point_normal(Point3::origin(), Vector3::z())?;
 /// # let material = Material { restitution: Restitution::new(0.5)?, friction: Friction::None };
 /// # let scene = Scene {
@@ -212,7 +213,7 @@ impl<O: Observer> Walk<'_, O> {
 
     /// Whether `step` is none because a number in it is not finite, or because the ball is out of range; ends its simulation if so.
     fn diverges(&mut self, step: &Step) -> bool {
-        let reached = self.state.position.coords.amax().max(self.state.velocity.amax());
+        let reached = amax(&self.state.position.coords).max(amax(&self.state.velocity));
         let diverges = !step.is_finite() || reached > FARTHEST;
         if diverges {
             self.give_up(Ending::Diverged, EventKind::Diverged);

@@ -5,7 +5,7 @@
 //! pair.
 
 use crate::body::State;
-use crate::contacts::Contact;
+use crate::contacts::{Contact, PerContact};
 use crate::counters::Counters;
 use crate::effects::friction::ContactFriction;
 use crate::forces::Forces;
@@ -13,6 +13,7 @@ use crate::integrators::adaptive::Adaptive;
 use crate::integrators::{Step, exact};
 use crate::support::{Projection, project_offset};
 use crate::tolerance::{parallel, rate_rounding};
+use carom_geometry::rounding::UNIT_ROUNDOFF;
 use carom_geometry::site::Bend;
 use nalgebra::{Point3, Vector3};
 
@@ -34,6 +35,14 @@ impl Carrier {
     fn normal(&self, position: &Point3<f64>) -> Vector3<f64> {
         let away = self.bend.away_from(position).and_then(|away| away.try_normalize(0.0));
         away.unwrap_or(self.contact.normal)
+    }
+
+    /// The part of the acceleration towards it that is rounding: that of the `position`, seen from so near.
+    fn noise(&self, position: &Point3<f64>) -> f64 {
+        match self.bend {
+            Bend::Flat => 0.0,
+            _ => UNIT_ROUNDOFF * position.coords.amax() / self.radius,
+        }
     }
 
     /// The acceleration towards it, in m/s^2, that following its curve takes at `velocity`: v^2 / r across an edge.
@@ -63,7 +72,7 @@ pub struct Balance {
 impl Balance {
     /// Balances the acceleration `a` on `carriers` for a ball in `state`.
     pub fn of(a: &Vector3<f64>, carriers: &[Carrier], state: &State) -> Self {
-        let normals: Vec<Vector3<f64>> = carriers.iter().map(|c| c.normal(&state.position)).collect();
+        let normals: PerContact<Vector3<f64>> = carriers.iter().map(|c| c.normal(&state.position)).collect();
         let loads = project_offset(a, &normals, |i| carriers[i].centripetal(&state.velocity));
         let (mut friction, mut sticks) = (0.0, false);
         for (i, load) in loads.loads() {
@@ -155,7 +164,8 @@ pub fn slide(
         return Slide { step: exact::step(state, a, remaining), stops: false };
     }
     let longest = carriers.iter().map(|c| longest_step(c, state, &balance.free)).fold(remaining, f64::min);
-    let step = integrator.step(state, longest, |s, after| {
+    let noise = carriers.iter().map(|c| c.noise(&state.position)).fold(0.0, f64::max);
+    let step = integrator.step_over(noise, state, longest, |s, after| {
         let a = forces.acceleration_after(s, after, counters);
         // With what the carriers make of the motion itself: towards the centre of the curve.
         Balance::of(&a, carriers, s).acceleration(&s.velocity)

@@ -29,9 +29,9 @@ pub struct Material {
 /// The shape of a surface; both of its sides collide.
 ///
 /// ```
+/// use carom_dynamics::geometry::{mesh::Mesh, plane::Plane, polygon::Polygon};
+/// use carom_dynamics::nalgebra::{Point3, Vector3};
 /// use carom_dynamics::surface::Shape;
-/// use carom_geometry::{mesh::Mesh, plane::Plane, polygon::Polygon};
-/// use nalgebra::{Point3, Vector3};
 /// use std::sync::Arc;
 ///
 /// let floor = Shape::Plane(Plane::from_point_normal(Point3::origin(), Vector3::z())?);
@@ -57,9 +57,9 @@ pub enum Shape {
 ///
 /// ```
 /// use carom_dynamics::effects::{friction::Friction, restitution::Restitution};
+/// use carom_dynamics::geometry::plane::Plane;
+/// use carom_dynamics::nalgebra::{Point3, Vector3};
 /// use carom_dynamics::surface::{Material, Shape, Surface};
-/// use carom_geometry::plane::Plane;
-/// use nalgebra::{Point3, Vector3};
 ///
 /// let wall = Plane::from_point_normal(Point3::new(3.0, 0.0, 0.0), -Vector3::x())?;
 /// let plaster = Material { restitution: Restitution::new(0.6)?, friction: Friction::None };

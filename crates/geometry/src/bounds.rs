@@ -9,7 +9,7 @@ use nalgebra::{Point3, Vector3};
 ///
 /// ```
 /// use carom_geometry::bounds::Aabb;
-/// use nalgebra::{Point3, Vector3};
+/// use carom_geometry::nalgebra::{Point3, Vector3};
 ///
 /// let bounds = Aabb::of_points(&[Point3::origin(), Point3::new(2.0, 4.0, 6.0)]);
 /// assert_eq!((bounds.extent(), bounds.centre()), (Vector3::new(2.0, 4.0, 6.0), Point3::new(1.0, 2.0, 3.0)));
@@ -124,9 +124,9 @@ pub(crate) fn largest(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
-/// The largest |component| of a vector of numbers.
+/// The largest |component| of a vector, none of them NaN.
 #[inline]
-pub(crate) fn amax(v: &Vector3<f64>) -> f64 {
+pub fn amax(v: &Vector3<f64>) -> f64 {
     largest(largest(v.x.abs(), v.y.abs()), v.z.abs())
 }
 

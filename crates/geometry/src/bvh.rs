@@ -7,6 +7,7 @@ use frame::{Frame, LocalSegment};
 use nalgebra::Point3;
 
 use crate::bounds::Aabb;
+use wide::f32x8;
 
 /// Children of a node: two SSE registers, one AVX register.
 const WIDTH: usize = 8;
@@ -26,6 +27,7 @@ pub struct FatSegment {
 
 /// Eight boxes and what is in them, in arrays that one loop of vector instructions reads.
 #[derive(Debug, Clone)]
+#[repr(align(32))]
 struct Node {
     /// Least x, y, z, then largest x, y, z of each child; +infinity and -infinity where there is none.
     planes: [[f32; WIDTH]; 6],
@@ -36,20 +38,12 @@ impl Node {
     /// A bit for each child whose box meets the one from `lo` to `hi`.
     #[inline]
     fn meets(&self, lo: &[f32; 3], hi: &[f32; 3]) -> u32 {
-        let mut meets = [true; WIDTH];
-        for i in 0..3 {
-            for (meets, (least, largest)) in meets.iter_mut().zip(self.planes[i].iter().zip(&self.planes[i + 3])) {
-                *meets &= (*least <= hi[i]) & (*largest >= lo[i]);
-            }
-        }
-        mask(&meets)
+        let meets = |i: usize| {
+            let (least, largest) = (f32x8::new(self.planes[i]), f32x8::new(self.planes[i + 3]));
+            least.simd_le(f32x8::splat(hi[i])) & largest.simd_ge(f32x8::splat(lo[i]))
+        };
+        (meets(0) & meets(1) & meets(2)).to_bitmask()
     }
-}
-
-/// A bit for each that is true.
-#[inline]
-fn mask(flags: &[bool; WIDTH]) -> u32 {
-    flags.iter().enumerate().fold(0, |mask, (j, &flag)| mask | u32::from(flag) << j)
 }
 
 /// A child of a node: the index of a node, or `LEAF`, how many items less one, and the first of them.

@@ -22,8 +22,8 @@ pub struct Clearance {
 ///
 /// ```
 /// use carom_geometry::clearance::Entry;
+/// use carom_geometry::nalgebra::{Point3, Vector3};
 /// use carom_geometry::path::Path;
-/// use nalgebra::{Point3, Vector3};
 ///
 /// // 2 m above a floor, downwards by 4 m: there at the half of the way. Upwards: never.
 /// let floor = Vector3::z();

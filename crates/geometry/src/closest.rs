@@ -1,6 +1,6 @@
 //! The point of a triangle closest to a given one, for triangles of any shape and size.
 
-use crate::bounds::amax;
+use crate::bounds::{amax, largest};
 use crate::normal::cross_compensated;
 use crate::rounding::{LEAST_SINE_SQUARED, NEEDLE_SINE_SQUARED, exponent, scale};
 use nalgebra::{Point3, Vector3};
@@ -50,10 +50,13 @@ pub fn closest_point(triangle: &[Point3<f64>; 3], x: &Point3<f64>) -> Closest {
 
 /// Exponents of coordinate differences for which products of four neither overflow nor lose what matters.
 const DIRECT_RANGE: std::ops::Range<i32> = -200..250;
+/// The same range as numbers.
+const LEAST_DIRECT: f64 = f64::from_bits((1023 - 200) << 52);
+const LIMIT_OF_DIRECT: f64 = f64::from_bits((1023 + 250) << 52);
 
 /// A triangle that is asked for more than one closest point: what depends on it alone is computed once.
 pub(crate) struct Asked {
-    triangle: [Point3<f64>; 3],
+    corners: [Vector3<f64>; 3],
     /// Of the triangle, or of one of size 1 if that is not in [`DIRECT_RANGE`].
     frame: Frame,
     size: f64,
@@ -61,26 +64,34 @@ pub(crate) struct Asked {
 }
 
 impl Asked {
-    pub(crate) fn new(triangle: &[Point3<f64>; 3]) -> Self {
-        let [a, b, c] = triangle;
-        let size = amax(&(b - a)).max(amax(&(c - a)));
-        let k = exponent(size);
-        if DIRECT_RANGE.contains(&k) || size == 0.0 {
-            return Self { triangle: *triangle, frame: Frame::new(triangle), size, in_range: size > 0.0 };
+    /// The triangle with these `corners`.
+    #[inline]
+    pub(crate) fn new(corners: [Vector3<f64>; 3]) -> Self {
+        let [a, b, c] = corners;
+        let size = largest(amax(&(b - a)), amax(&(c - a)));
+        let triangle = [Point3::from(a), Point3::from(b), Point3::from(c)];
+        if (LEAST_DIRECT..LIMIT_OF_DIRECT).contains(&size) || size == 0.0 {
+            return Self { corners, frame: Frame::new(&triangle), size, in_range: size > 0.0 };
         }
+        let k = exponent(size);
         let frame = Frame::new(&triangle.map(|p| p.map(|c| scale(c, -k))));
-        Self { triangle: *triangle, frame, size: scale(size, -k), in_range: false }
+        Self { corners, frame, size: scale(size, -k), in_range: false }
     }
 
     /// What [`closest_point`] says, bit for bit.
-    pub(crate) fn closest(&self, x: &Point3<f64>) -> Closest {
-        let direct = || exponent(self.size.max(amax(&(x - self.triangle[0])))) < DIRECT_RANGE.end;
-        if self.in_range && direct() { self.frame.closest(x) } else { closest_point(&self.triangle, x) }
+    #[inline]
+    pub(crate) fn closest(&self, x: &Vector3<f64>) -> Closest {
+        if self.in_range && largest(self.size, amax(&(x - self.corners[0]))) < LIMIT_OF_DIRECT {
+            self.frame.closest(&Point3::from(*x))
+        } else {
+            closest_point(&self.corners.map(Point3::from), &Point3::from(*x))
+        }
     }
 
-    /// The triangle.
-    pub(crate) fn corners(&self) -> &[Point3<f64>; 3] {
-        &self.triangle
+    /// The corners of the triangle.
+    #[inline]
+    pub(crate) fn corners(&self) -> &[Vector3<f64>; 3] {
+        &self.corners
     }
 
     /// The unit normal, to a few roundings and on either side; none without an area that f64 can tell.
@@ -176,7 +187,8 @@ impl Frame {
         let inside = |p: &Vector3<f64>, q: &Vector3<f64>| n.dot(&p.cross(q));
         // From the end with the lower coordinates and without the third vertex: the same bits from each face that has the edge.
         let along = |p: &Point3<f64>, q: &Point3<f64>, feature| {
-            let (from, to) = if p.coords.as_slice() <= q.coords.as_slice() { (p, q) } else { (q, p) };
+            let is_lower = (p.x, p.y, p.z) <= (q.x, q.y, q.z);
+            let (from, to) = if is_lower { (p, q) } else { (q, p) };
             let (edge, offset) = (to - from, x - from);
             let length = edge.norm_squared();
             if length == 0.0 {

@@ -36,10 +36,12 @@ impl Hold {
     /// Whether the triangle is behind the plane, as far as that can be told.
     #[inline]
     fn hides(&self, triangle: &[Point3<f64>; 3]) -> bool {
-        triangle.iter().all(|v| {
+        let is_behind = |v: &Point3<f64>| {
             let d = v - self.point;
             self.normal.dot(&d) <= self.slack + hold_bound(amax(&d))
-        })
+        };
+        let [a, b, c] = triangle;
+        is_behind(a) && is_behind(b) && is_behind(c)
     }
 }
 
@@ -59,7 +61,8 @@ impl MovingBall<'_> {
     #[inline]
     pub(crate) fn asked(&self, triangle: &[Point3<f64>; 3]) -> Asked {
         let start = self.path.start();
-        Asked::new(&triangle.map(|v| Point3::from(v - start)))
+        let [a, b, c] = triangle;
+        Asked::new([a - start, b - start, c - start])
     }
 
     /// Whether the plane that faces the ball at `to` is enough to certify that it stays farther than `reach` off a triangle in
@@ -87,9 +90,9 @@ impl MovingBall<'_> {
 ///
 /// ```
 /// use carom_geometry::contact::{Contact, MovingBall, first_contact};
+/// use carom_geometry::nalgebra::{Point3, Vector3};
 /// use carom_geometry::path::Path;
 /// use carom_geometry::triangle::Feature;
-/// use nalgebra::{Point3, Vector3};
 ///
 /// let triangle = [Point3::origin(), Point3::new(4.0, 0.0, 0.0), Point3::new(0.0, 4.0, 0.0)];
 /// let falling = |x: f64| Path::line(Point3::new(x, 1.0, 3.0), Vector3::new(0.0, 0.0, -4.0));
@@ -130,7 +133,7 @@ pub(crate) fn contact_from(ball: &MovingBall, asked: &Asked, from: f64, to: f64,
         return Contact::Miss;
     }
     let (path, mut f) = (ball.path, from);
-    let size = asked.corners().iter().map(|a| amax(&a.coords)).fold(ball.radius, largest);
+    let size = asked.corners().iter().map(amax).fold(ball.radius, largest);
     let bound_at = |f: f64| contact_bound(size + path.reach(f));
     // Planes are met on the whole path: a contact at `to` is decided as one before it.
     let end = to.max(1.0);
@@ -189,7 +192,7 @@ pub(crate) fn contact_from(ball: &MovingBall, asked: &Asked, from: f64, to: f64,
 /// to there. While the ball has not met it, it is as good a certificate as any, and for a contact with the face the only one needed.
 fn face_plane(asked: &Asked, ball: &MovingBall, f: f64) -> Option<(f64, Vector3<f64>)> {
     let n = asked.normal()?;
-    let from_corner = ball.path.displacement(f) - asked.corners()[0].coords;
+    let from_corner = ball.path.displacement(f) - asked.corners()[0];
     let n = if n.dot(&from_corner) < 0.0 { -n } else { n };
     Some((-farthest_along(asked.corners(), &n) - ball.radius, n))
 }
@@ -207,7 +210,7 @@ struct Support {
 impl Support {
     /// The plane that faces the ball at `f`.
     fn at(ball: &MovingBall, asked: &Asked, f: f64) -> Self {
-        let closest = asked.closest(&Point3::from(ball.path.displacement(f)));
+        let closest = asked.closest(&ball.path.displacement(f));
         let corners = asked.corners();
         let (away, distance) = (closest.offset, closest.offset.norm());
         let normal = if distance > 0.0 { away / distance } else { escape_direction(corners, ball.path, f) };
@@ -234,9 +237,9 @@ impl Support {
 }
 
 /// How far the triangle reaches along `normal`, from the start of the path.
-fn farthest_along(corners: &[Point3<f64>; 3], normal: &Vector3<f64>) -> f64 {
-    let [a, b, c] = corners.map(|p| normal.dot(&p.coords));
-    largest(largest(a, b), c)
+fn farthest_along(corners: &[Vector3<f64>; 3], normal: &Vector3<f64>) -> f64 {
+    let [a, b, c] = corners;
+    largest(largest(normal.dot(a), normal.dot(b)), normal.dot(c))
 }
 
 /// Support planes looked at to polish a contact: from within its bound, a graze comes nearer by a factor of 4 with each.
@@ -263,7 +266,7 @@ fn polish(ball: &MovingBall, asked: &Asked, support: Support, f: f64, to: f64, b
 }
 
 /// Where to look when the centre lies on the triangle: across the face, to the side the ball moves to.
-fn escape_direction(corners: &[Point3<f64>; 3], path: &Path, f: f64) -> Vector3<f64> {
+fn escape_direction(corners: &[Vector3<f64>; 3], path: &Path, f: f64) -> Vector3<f64> {
     let [a, b, c] = corners;
     let across = unit(&(b - a).cross(&(c - a)));
     let velocity = path.derivative(f);

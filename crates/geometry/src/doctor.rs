@@ -23,7 +23,7 @@ pub enum Severity {
 ///
 /// ```
 /// use carom_geometry::doctor::{Finding, Severity, diagnose};
-/// use nalgebra::Point3;
+/// use carom_geometry::nalgebra::Point3;
 ///
 /// let vertices = [Point3::origin(), Point3::new(1.0, 0.0, 0.0), Point3::new(0.0, 1.0, 0.0), Point3::new(2.0, 0.0, 0.0)];
 /// let findings = diagnose(&vertices, &[[0, 1, 2], [0, 1, 3]]);

@@ -7,7 +7,7 @@ use nalgebra::Point2;
 ///
 /// ```
 /// use carom_geometry::inside::{Location, locate_simple};
-/// use nalgebra::Point2;
+/// use carom_geometry::nalgebra::Point2;
 ///
 /// let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(Point2::from);
 /// assert_eq!(locate_simple(&square, &Point2::new(0.5, 0.5)), Location::Inside);

@@ -21,9 +21,9 @@
 //! A ball falls onto a floor, and f is the share of its path at which it is there:
 //!
 //! ```
+//! use carom_geometry::nalgebra::{Point3, Vector3};
 //! use carom_geometry::path::Path;
 //! use carom_geometry::plane::{Plane, Side};
-//! use nalgebra::{Point3, Vector3};
 //!
 //! # fn main() -> Result<(), carom_geometry::error::PlaneError> {
 //! let floor = Plane::from_point_normal(Point3::origin(), Vector3::z())?;

@@ -112,10 +112,10 @@ pub struct Edge {
 /// ```
 /// use carom_geometry::contact::MovingBall;
 /// use carom_geometry::mesh::Mesh;
+/// use carom_geometry::nalgebra::{Point3, Vector3};
 /// use carom_geometry::path::Path;
 /// use carom_geometry::rounding::SEGMENT_FRACTION_BOUND;
 /// use carom_geometry::sweep::Work;
-/// use nalgebra::{Point3, Vector3};
 ///
 /// // A tetrahedron: four vertices, four faces that turn counter-clockwise seen from outside.
 /// let vertices = vec![Point3::origin(), Point3::new(1.0, 0.0, 0.0), Point3::new(0.0, 1.0, 0.0), Point3::new(0.0, 0.0, 1.0)];
@@ -142,6 +142,7 @@ pub struct Mesh {
     topology: Topology,
     vertex_faces: VertexFaces,
     bvh: Bvh,
+    face_size: f64,
 }
 
 /// Unit normals by face.
@@ -204,7 +205,8 @@ impl Mesh {
             if repeats.contains(&(f as u32)) { Aabb::empty() } else { box_of() }
         });
         let vertex_faces = VertexFaces::of(vertices.len(), &faces, repeats);
-        Self { vertices, faces, normals, topology, vertex_faces, bvh }
+        let face_size = bvh.bounds().extent().amax() / (faces.len() as f64).sqrt();
+        Self { vertices, faces, normals, topology, vertex_faces, bvh, face_size }
     }
 
     /// The vertices, as given.
@@ -234,13 +236,21 @@ impl Mesh {
         }
     }
 
-    /// [`normal`](Self::normal) without its promise of unit length.
+    /// [`normal`](Self::normal) without its promise of unit length: zero of a face of no area.
     #[inline]
-    pub(crate) fn plain_normal(&self, face: u32) -> Option<&Vector3<f64>> {
+    pub(crate) fn plain_normal(&self, face: u32) -> &Vector3<f64> {
         match &self.normals {
-            Normals::Shared(n) => Some(n),
-            Normals::Each(all) => Some(&all[face as usize]).filter(|n| **n != Vector3::zeros()),
+            Normals::Shared(n) => n,
+            Normals::Each(all) => &all[face as usize],
         }
+    }
+
+    /// The corners of a face as seen from `origin`.
+    #[inline]
+    pub(crate) fn triangle_from(&self, face: u32, origin: &Point3<f64>) -> [Vector3<f64>; 3] {
+        let [a, b, c] = self.faces[face as usize];
+        let corner = |v: u32| self.vertices[v as usize] - origin;
+        [corner(a), corner(b), corner(c)]
     }
 
     /// The least box around all faces.
@@ -251,6 +261,11 @@ impl Mesh {
     /// The tree over the faces' boxes; its items are the faces.
     pub fn bvh(&self) -> &Bvh {
         &self.bvh
+    }
+
+    /// About the length of a side of a face, from the size of the mesh and the number of faces.
+    pub(crate) fn face_size(&self) -> f64 {
+        self.face_size
     }
 
     /// How the surface goes on across `side` of `face`, seen from the front of `face`: the side its normal points to.

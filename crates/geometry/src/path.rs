@@ -11,8 +11,8 @@ use nalgebra::{Point3, Vector3};
 /// A path p(f) = start + t1 f + t2 f^2 + t3 f^3 + t4 f^4, f in [0, 1].
 ///
 /// ```
+/// use carom_geometry::nalgebra::{Point3, Vector3};
 /// use carom_geometry::path::Path;
-/// use nalgebra::{Point3, Vector3};
 ///
 /// // A second of flight under g = 10 m/s^2, thrown upwards at 5 m/s: the terms of f and of f^2, which is g / 2.
 /// let path = Path::parabola(Point3::origin(), Vector3::new(3.0, 0.0, 5.0), Vector3::new(0.0, 0.0, -5.0));

@@ -30,8 +30,8 @@ impl Side {
 /// The plane *is* the stored p and n; every answer, exact or bounded, is about them.
 ///
 /// ```
+/// use carom_geometry::nalgebra::{Point3, Vector3};
 /// use carom_geometry::plane::{Plane, Side};
-/// use nalgebra::{Point3, Vector3};
 ///
 /// // From a point and a normal of any length; also from A, B, C, D, or through three points.
 /// let floor = Plane::from_point_normal(Point3::origin(), Vector3::new(0.0, 0.0, 5.0))?;

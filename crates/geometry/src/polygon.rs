@@ -15,8 +15,8 @@ use nalgebra::{Point2, Point3, UnitVector3};
 ///
 /// ```
 /// use carom_geometry::inside::Location;
+/// use carom_geometry::nalgebra::Point3;
 /// use carom_geometry::polygon::Polygon;
-/// use nalgebra::Point3;
 ///
 /// let corners = |xy: &[(f64, f64)]| xy.iter().map(|&(x, y)| Point3::new(x, y, 1.0)).collect();
 /// let l = Polygon::new(corners(&[(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0)]))?;

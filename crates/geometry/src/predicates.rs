@@ -120,6 +120,28 @@ pub(crate) fn orient3d_value(a: &Point3<f64>, b: &Point3<f64>, c: &Point3<f64>, 
     (det, orient3d_bound(permanent, a.z.abs() + b.z.abs() + c.z.abs()))
 }
 
+/// The determinants of [`orient3d`] of a triangle and each of `points` in f64, each with a bound on its error, as [`orient3d_value`] has them, but
+/// as seen from the first corner: where the triangle is small beside its distance from the point, the bound is as well.
+#[inline]
+pub(crate) fn orient3d_values<const N: usize>(
+    triangle: &[Point3<f64>; 3],
+    points: [&Point3<f64>; N],
+) -> [(f64, f64); N] {
+    let [a, b, c] = triangle;
+    let (b, c) = (b - a, c - a);
+    let minor = |i: usize, j: usize| {
+        let (left, right) = (b[i] * c[j], b[j] * c[i]);
+        (left - right, left.abs() + right.abs())
+    };
+    let ((x, x_abs), (y, y_abs), (z, z_abs)) = (minor(1, 2), minor(2, 0), minor(0, 1));
+    points.map(|p| {
+        let d = p - a;
+        let det = d.x * x + d.y * y + d.z * z;
+        let permanent = d.x.abs() * x_abs + d.y.abs() * y_abs + d.z.abs() * z_abs;
+        (det, orient3d_bound(permanent, d.x.abs() + d.y.abs() + d.z.abs()))
+    })
+}
+
 /// The determinant of [`orient3d`], exactly.
 pub(crate) fn orient3d_exact(a: &Point3<f64>, b: &Point3<f64>, c: &Point3<f64>, d: &Point3<f64>) -> Exact {
     let normal = exact::cross(&exact::difference(b, a), &exact::difference(c, a));

@@ -5,8 +5,8 @@ use nalgebra::{Point2, Point3, Vector3};
 /// The axis along which a polygon is seen at its largest.
 ///
 /// ```
+/// use carom_geometry::nalgebra::{Point2, Point3, Vector3};
 /// use carom_geometry::projection::DominantAxis;
-/// use nalgebra::{Point2, Point3, Vector3};
 ///
 /// // A plane that faces along y is looked at from there: what is left of (x, y, z) is (z, x).
 /// let axis = DominantAxis::of(&Vector3::new(0.1, -0.9, 0.3));

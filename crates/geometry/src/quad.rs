@@ -11,8 +11,8 @@ use nalgebra::Point3;
 /// What four vertices make.
 ///
 /// ```
+/// use carom_geometry::nalgebra::Point3;
 /// use carom_geometry::quad::Quad;
-/// use nalgebra::Point3;
 ///
 /// let corners = |z| [Point3::origin(), Point3::new(1.0, 0.0, 0.0), Point3::new(1.0, 1.0, z), Point3::new(0.0, 1.0, 0.0)];
 /// assert!(matches!(Quad::new(corners(0.0))?, Quad::Planar(square) if square.area() == 1.0));

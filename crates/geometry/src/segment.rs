@@ -2,16 +2,16 @@
 
 use crate::closest::Feature;
 use crate::exact::{self, Exact, ExactVector};
-use crate::predicates::{Sign, orient3d, orient3d_exact, orient3d_value};
+use crate::predicates::{Sign, orient3d, orient3d_exact, orient3d_values};
 use crate::rounding::{SEGMENT_FRACTION_BOUND, UNIT_ROUNDOFF};
 use nalgebra::Point3;
 
 /// Whether a segment meets a triangle, and where first.
 ///
 /// ```
+/// use carom_geometry::nalgebra::Point3;
 /// use carom_geometry::segment::{SegmentHit, segment_hits_triangle};
 /// use carom_geometry::triangle::Feature;
-/// use nalgebra::Point3;
 ///
 /// let triangle = [Point3::origin(), Point3::new(4.0, 0.0, 0.0), Point3::new(0.0, 4.0, 0.0)];
 /// let down = |x, y| segment_hits_triangle(&Point3::new(x, y, 1.0), &Point3::new(x, y, -1.0), &triangle);
@@ -43,21 +43,30 @@ pub enum SegmentHit {
 /// the segment or the point that it covers; so is a segment without a length.
 pub fn segment_hits_triangle(p0: &Point3<f64>, p1: &Point3<f64>, triangle: &[Point3<f64>; 3]) -> SegmentHit {
     let [a, b, c] = triangle;
-    let (s0, s1) = (orient3d(a, b, c, p0), orient3d(a, b, c, p1));
+    let heights = orient3d_values(triangle, [p0, p1]);
+    let sign = |(value, bound): (f64, f64), p: &Point3<f64>| {
+        if value.abs() > bound { Sign::of(value) } else { orient3d(a, b, c, p) }
+    };
+    let (s0, s1) = (sign(heights[0], p0), sign(heights[1], p1));
     match (s0, s1) {
         (Sign::Zero, Sign::Zero) => return coplanar(p0, p1, triangle),
         _ if s0 == s1 => return SegmentHit::Miss,
         _ => {}
     }
     // The line meets the plane in one point, inside if it passes all edges on one side.
-    let sides = [orient3d(p0, p1, a, b), orient3d(p0, p1, b, c), orient3d(p0, p1, c, a)];
+    let side = |q: &Point3<f64>, r: &Point3<f64>| {
+        // The sign of orient3d(p0, p1, q, r), from p0: what the three have in common is computed once.
+        let [(value, bound)] = orient3d_values(&[*p0, *q, *r], [p1]);
+        if value.abs() > bound { Sign::of(value) } else { orient3d(p0, p1, q, r) }
+    };
+    let sides = [side(a, b), side(b, c), side(c, a)];
     if sides.contains(&Sign::Positive) && sides.contains(&Sign::Negative) {
         return SegmentHit::Miss;
     }
     let f = match (s0, s1) {
         (Sign::Zero, _) => 0.0,
         (_, Sign::Zero) => 1.0,
-        _ => fraction(p0, p1, triangle),
+        _ => fraction(p0, p1, triangle, heights),
     };
     SegmentHit::Hit { f, feature: feature(sides.map(|s| s == Sign::Zero)), coplanar: false }
 }
@@ -76,8 +85,14 @@ fn feature(on: [bool; 3]) -> Feature {
 }
 
 /// f = d0 / (d0 - d1) (R8) of end points strictly on either side of the plane, rounded down.
-fn fraction(p0: &Point3<f64>, p1: &Point3<f64>, [a, b, c]: &[Point3<f64>; 3]) -> f64 {
-    let ((d0, e0), (d1, e1)) = (orient3d_value(a, b, c, p0), orient3d_value(a, b, c, p1));
+///
+/// `heights` are d0 and d1 in some unit, computed, each with a bound on its error.
+fn fraction(
+    p0: &Point3<f64>,
+    p1: &Point3<f64>,
+    [a, b, c]: &[Point3<f64>; 3],
+    [(d0, e0), (d1, e1)]: [(f64, f64); 2],
+) -> f64 {
     let (d0, d1) = (d0.abs(), d1.abs());
     let whole = d0 + d1;
     // f grows with d0 and falls with d1, so this is below the exact one; 4 u for the four roundings.
@@ -303,7 +318,7 @@ mod tests {
             let zero = Exact::ZERO;
             if (d0 > zero && d1 < zero) || (d0 < zero && d1 > zero) {
                 let want = &d0 / (&d0 - d1);
-                let early = exact::nearest(&(want - exact::exact(fraction(&p0, &p1, &t))));
+                let early = exact::nearest(&(want - exact::exact(fraction(&p0, &p1, &t, orient3d_values(&t, [&p0, &p1])))));
                 prop_assert!((0.0..=SEGMENT_FRACTION_BOUND).contains(&early), "early by {early:e}");
             }
         }

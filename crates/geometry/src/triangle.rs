@@ -10,8 +10,8 @@ use nalgebra::{Point3, UnitVector3};
 /// A triangle with an area: three finite vertices that do not lie on one line.
 ///
 /// ```
+/// use carom_geometry::nalgebra::Point3;
 /// use carom_geometry::triangle::{Feature, Triangle, closest_point};
-/// use nalgebra::Point3;
 ///
 /// let corners = [Point3::origin(), Point3::new(4.0, 0.0, 0.0), Point3::new(0.0, 4.0, 0.0)];
 /// let triangle = Triangle::new(corners)?;

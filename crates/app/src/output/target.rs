@@ -21,9 +21,10 @@ pub fn require_extension(path: &Path, extension: &str) -> Result<(), AppError> {
     Err(AppError::Usage(format!("{shown}: the form follows from the extension, which is .{extension}")))
 }
 
-/// What went wrong, without the name of the temporary file, which the user has not given.
-fn plain(error: io::Error) -> io::Error {
-    error.raw_os_error().map_or(error, io::Error::from_raw_os_error)
+/// What went wrong with a file at `path`, without the name of the temporary one beside it, which the user has not given.
+fn plain(path: &Path, error: &io::Error) -> io::Error {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    folder.and_then(|folder| folder.metadata().err()).unwrap_or_else(|| error.kind().into())
 }
 
 /// Where bytes go.
@@ -58,7 +59,7 @@ impl Target {
         let shown = if is_stdout(path) { "standard output".to_owned() } else { path.display().to_string() };
         match Writer::open(path) {
             Ok(writer) => Ok(Self { shown, writer }),
-            Err(source) => Err(AppError::Write { path: shown, source: plain(source) }),
+            Err(source) => Err(AppError::Write { path: shown, source: plain(path, &source) }),
         }
     }
 

@@ -10,8 +10,8 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use carom_dynamics::events::{EventKind, Motion};
 use carom_dynamics::integrators::Step;
-use carom_dynamics::observer::Turning;
 use carom_dynamics::surface::{Shape, Surface};
+use carom_dynamics::turning::Turning;
 use nalgebra::Vector3;
 use serde::{Serialize, Serializer};
 

@@ -96,7 +96,7 @@ in vec2 corner;
 in vec4 from, to;
 uniform mat4 both;
 uniform vec2 screen;
-uniform float width;
+uniform float width, now;
 out float time;
 void main() {
   vec4 a = both * vec4(from.xyz, 1.0);
@@ -111,8 +111,8 @@ void main() {
   vec4 end = corner.x < 0.0 ? a : b;
   vec2 beside = vec2(-way.y, way.x) * corner.y + way * corner.x * 0.5;
   end.xy += beside * width / screen * end.w;
-  // A little nearer than the surface on which it lies.
-  end.z -= 2e-5 * end.w;
+  // A little nearer than the surface on which it lies; what is past nearer than what is to come, where a ball goes forth and back.
+  end.z -= (from.w > now ? 2e-5 : 4e-5) * end.w;
   time = corner.x < 0.0 ? from.w : to.w;
   gl_Position = end;
 }`;
@@ -260,7 +260,9 @@ class WebGLPicture {
     this.fillMarks(now, look);
     this.drawCloud(this.marks, scene, camera, lightSeen, 4, 1);
     this.fillBalls(now, look);
-    this.drawCloud(this.balls, scene, camera, lightSeen, this.run.count > 200 ? 2.5 : 4, 0);
+    // The more balls there are, the smaller they may be: they would cover what they bounce on.
+    const room = Math.sqrt((width * height) / this.run.count) / look.ratio;
+    this.drawCloud(this.balls, scene, camera, lightSeen, clamp(room / 10, 1.2, 4), 0);
     gl.depthMask(false);
     this.drawSurfaces(scene, styles, "glass");
     gl.depthMask(true);

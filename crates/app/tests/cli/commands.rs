@@ -44,6 +44,8 @@ fn usage_errors_are_2() {
         &["run", "scene.toml", "--events", "x.csv", "--frames", "x.csv"],
         &["check", "scene.xyz"],
         &["view", "scene.toml"],
+        &["view", "scene.toml", "-o", "x.pdf"],
+        &["plot", "scene.toml", "-o", "x.png"],
         &["export", "scene.toml", "-o", "x.obj"],
         &["export", "scene.toml", "-o", "x.glb", "--keys", "all"],
         &["export", "scene.toml", "-o", "x.glb", "--keys", "fps=0"],

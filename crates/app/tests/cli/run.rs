@@ -235,6 +235,10 @@ fn an_output_that_cannot_be_written_leaves_nothing_behind() {
     let args = ["run", "scene.toml", "--events", "events.csv", "--summary", "no/such/folder/summary.json"];
     let output = folder.run(&args);
     assert_eq!(output.status.code(), Some(1), "{}", shown(&output));
+    // It is the file that the user has named which cannot be written, and no other.
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert!(message.starts_with("error: cannot write no/such/folder/summary.json: "), "{message}");
+    assert!(!message.contains(".part"), "{message}");
     assert_eq!(folder.names(), ["events.csv", "scene.toml"]);
     assert_eq!(folder.read("events.csv"), "of old");
     // A run that succeeds replaces it.

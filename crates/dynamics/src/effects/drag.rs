@@ -50,7 +50,7 @@ fn beyond_stokes(re: f64) -> f64 {
 ///
 /// ```
 /// use carom_dynamics::effects::drag::Drag;
-/// use nalgebra::Vector3;
+/// use carom_dynamics::nalgebra::Vector3;
 ///
 /// // The book's linear law in a wind of 2 m/s, and the quadratic one of a sphere in air.
 /// let book = Drag::linear(0.05)?.in_wind(Vector3::new(2.0, 0.0, 0.0))?;

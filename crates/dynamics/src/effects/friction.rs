@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 ///
 /// ```
 /// use carom_dynamics::effects::friction::Friction;
-/// use nalgebra::Vector3;
+/// use carom_dynamics::nalgebra::Vector3;
 ///
 /// // 4 m/s along the surface, 2 m/s into it, restitution 1/2.
 /// let after = |friction: Friction| friction.slow(Vector3::new(4.0, 0.0, 0.0), 2.0, 0.5).x;

@@ -54,11 +54,23 @@ impl Adaptive {
         &mut self,
         state: &State,
         remaining: f64,
+        acceleration: impl FnMut(&State, f64) -> Vector3<f64>,
+    ) -> Step {
+        self.step_over(0.0, state, remaining, acceleration)
+    }
+
+    /// The same where `noise` is the relative rounding of the acceleration: no step is made smaller because of that.
+    pub fn step_over(
+        &mut self,
+        noise: f64,
+        state: &State,
+        remaining: f64,
         mut acceleration: impl FnMut(&State, f64) -> Vector3<f64>,
     ) -> Step {
+        let tolerance = self.tolerance.max(noise);
         let mut h = self.next.min(remaining);
         for _ in 0..MAX_HALVINGS {
-            let (step, error) = self.attempt(state, h, &mut acceleration);
+            let (step, error) = within(tolerance, state, h, &mut acceleration);
             if error <= 1.0 {
                 self.next = if error <= DOUBLE_BELOW { 2.0 * h } else { h };
                 return step;
@@ -66,20 +78,20 @@ impl Adaptive {
             h *= 0.5;
         }
         self.next = h;
-        self.attempt(state, h, &mut acceleration).0
+        within(tolerance, state, h, &mut acceleration).0
     }
+}
 
-    /// One step of `h`, and its error in units of what is allowed.
-    fn attempt(
-        &self,
-        state: &State,
-        h: f64,
-        acceleration: &mut impl FnMut(&State, f64) -> Vector3<f64>,
-    ) -> (Step, f64) {
-        let (step, error, speed) = attempt(state, h, acceleration);
-        let error = if error == 0.0 { 0.0 } else { error / (self.tolerance * speed) };
-        (step, error)
-    }
+/// One step of `h`, and its error in units of what `tolerance` allows.
+fn within(
+    tolerance: f64,
+    state: &State,
+    h: f64,
+    acceleration: &mut impl FnMut(&State, f64) -> Vector3<f64>,
+) -> (Step, f64) {
+    let (step, error, speed) = attempt(state, h, acceleration);
+    let error = if error == 0.0 { 0.0 } else { error / (tolerance * speed) };
+    (step, error)
 }
 
 /// One step of `h` seconds, whatever its error.

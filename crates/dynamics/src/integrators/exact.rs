@@ -2,6 +2,7 @@
 
 use crate::body::State;
 use crate::integrators::Step;
+use carom_geometry::bounds::amax;
 use carom_geometry::path::Path;
 use nalgebra::Vector3;
 
@@ -19,7 +20,7 @@ pub fn step(state: &State, a: Vector3<f64>, remaining: f64) -> Step {
     // Not a (h h / 2): h^2 may be out of range where nothing accelerates.
     let terms = |h: f64| (state.velocity * h, (a * h) * (0.5 * h));
     let (mut linear, mut quadratic) = terms(h);
-    while !(linear.amax() + quadratic.amax()).is_finite() {
+    while !(amax(&linear) + amax(&quadratic)).is_finite() {
         h *= SHORTER;
         (linear, quadratic) = terms(h);
     }

@@ -118,10 +118,10 @@ impl Step {
     /// Whether the path, the velocity and their reach over the whole step are finite.
     pub fn is_finite(&self) -> bool {
         // A maximum passes over what is no number; a sum does not.
-        let start = self.path.start().coords;
-        let vectors = self.path.terms().iter().chain(&self.velocity).chain([&start]);
-        let sum = vectors.flatten().fold(self.path.reach(self.to) + self.seconds, |sum, x| sum + x.abs());
-        sum.is_finite()
+        let size = |sum: f64, v: &Vector3<f64>| sum + v.x.abs() + v.y.abs() + v.z.abs();
+        let sum = size(self.path.reach(self.to) + self.seconds, &self.path.start().coords);
+        let terms = self.path.terms();
+        terms.iter().chain(&self.velocity[..=terms.len()]).fold(sum, size).is_finite()
     }
 
     /// The time from the start to `f`, in s.

@@ -3,7 +3,7 @@
 use super::Walk;
 use crate::body::State;
 use crate::collision::{Hit, Returns};
-use crate::contacts::{Contact, Contacts};
+use crate::contacts::{Contact, Contacts, MAX_CONTACTS, PerContact};
 use crate::events::{Bound, Ending, EventKind, Motion};
 use crate::integrators::Step;
 use crate::observer::Observer;
@@ -11,6 +11,7 @@ use crate::response::{collapse, respond};
 use crate::tolerance::{
     COLLAPSE_AFTER, clock_bound, impact_time_bound, merge_angle_squared, rate_rounding, touch_distance,
 };
+use carom_geometry::bounds::amax;
 use carom_geometry::clearance::Entry;
 use nalgebra::Vector3;
 
@@ -23,8 +24,8 @@ impl<O: Observer> Walk<'_, O> {
         for _ in 0..self.halvings {
             timestep *= 0.5;
         }
-        let rounding = rate_rounding(self.state.velocity.norm());
-        let tangential = self.contacts.iter().any(|c| c.rate <= rounding);
+        let rounding = || rate_rounding(self.state.velocity.norm());
+        let tangential = self.integrator.timestep().is_some() && self.contacts.iter().any(|c| c.rate <= rounding());
         let step = self.integrator.step(&self.forces, &self.state, timestep, tangential, &mut self.counters);
         if self.is_unstable(&step) || self.diverges(&step) {
             return;
@@ -75,7 +76,7 @@ impl<O: Observer> Walk<'_, O> {
     pub(super) fn begin(&mut self) {
         let tolerance = self.touch_tolerance(0.0);
         let State { position, velocity } = self.state;
-        let mut contacts = self.obstacles.touching(&position, &velocity, tolerance, &mut self.counters);
+        let mut contacts = self.obstacles.touching(&position, &velocity, tolerance, None, &mut self.counters);
         let rounding = rate_rounding(velocity.norm());
         contacts.retain(|c| {
             let gap = self.obstacles.gap(c, &position);
@@ -96,8 +97,10 @@ impl<O: Observer> Walk<'_, O> {
     pub(super) fn arrive(&mut self, step: &Step, hit: Hit, returns: &Returns) {
         let tolerance = self.touch_tolerance(step.path.reach(hit.f)).max(self.obstacles.doubt(step, &hit));
         let before = std::mem::take(&mut self.contacts);
-        let mut contacts =
-            self.obstacles.touching(&self.state.position, &self.state.velocity, tolerance, &mut self.counters);
+        let State { position, velocity } = self.state;
+        // What slides is put back onto its surface, and is then elsewhere.
+        let f = (position == step.path.at(hit.f)).then_some(hit.f);
+        let mut contacts = self.obstacles.touching(&position, &velocity, tolerance, f, &mut self.counters);
         for contact in &mut contacts {
             self.correct(contact, tolerance);
             contact.rate = self.rate(step, hit, contact, &before, returns);
@@ -112,9 +115,9 @@ impl<O: Observer> Walk<'_, O> {
             let n = contact.normal;
             self.state.velocity += n * (contact.rate - n.dot(&self.state.velocity));
         }
-        let closing: Vec<bool> = contacts.iter().map(|c| c.rate < 0.0).collect();
+        let closing: PerContact<bool> = contacts.iter().map(|c| c.rate < 0.0).collect();
         if closing.contains(&true) {
-            let materials: Vec<_> = contacts.iter().map(|c| self.surfaces[c.surface].material).collect();
+            let materials: PerContact<_> = contacts.iter().map(|c| self.surfaces[c.surface].material).collect();
             let velocity_in = self.state.velocity;
             self.state.velocity = if collapses {
                 collapse(velocity_in, &mut contacts)
@@ -172,7 +175,7 @@ impl<O: Observer> Walk<'_, O> {
         }
         let place = |c: &Contact| (c.surface, c.site);
         for c in contacts.iter() {
-            if !self.answered.is_full() && self.answered.iter().all(|a| place(a) != place(c)) {
+            if self.answered.len() < MAX_CONTACTS && self.answered.iter().all(|a| place(a) != place(c)) {
                 self.answered.push(*c);
             }
         }
@@ -183,7 +186,7 @@ impl<O: Observer> Walk<'_, O> {
         for a in &self.answered {
             // Of what two faces of one plane answered, once.
             let apart = |c: &Contact| (a.normal - c.normal).norm_squared() > merge_angle_squared(tolerance, radius);
-            if !contacts.is_full() && contacts.iter().all(|c| place(a) != place(c) && apart(c)) {
+            if contacts.len() < MAX_CONTACTS && contacts.iter().all(|c| place(a) != place(c) && apart(c)) {
                 contacts.push(Contact { rate: a.normal.dot(&self.state.velocity), lasting: false, ..*a });
             }
         }
@@ -193,7 +196,7 @@ impl<O: Observer> Walk<'_, O> {
 
     /// What counts as touching here.
     pub(super) fn touch_tolerance(&self, travelled: f64) -> f64 {
-        let here = self.state.position.coords.amax().max(self.forces.ball.radius());
+        let here = amax(&self.state.position.coords).max(self.forces.ball.radius());
         // Contact with a face is found to the rounding of its corners as well; planes have none.
         let corners = if self.plan.meshes.is_empty() { 0.0 } else { self.plan.farthest };
         touch_distance(here + corners, travelled)

@@ -3,7 +3,7 @@
 use super::Walk;
 use crate::body::State;
 use crate::collision::Hit;
-use crate::contacts::{Contact, Contacts};
+use crate::contacts::{Contact, Contacts, PerContact};
 use crate::events::{EventKind, Motion};
 use crate::integrators::{Step, exact};
 use crate::observer::Observer;
@@ -25,7 +25,7 @@ fn main_carrier<'a>(carriers: &'a [Carrier], balance: &Balance) -> Option<&'a Ca
 
 impl<O: Observer> Walk<'_, O> {
     /// The contacts as carriers.
-    pub(super) fn carriers(&self) -> Vec<Carrier> {
+    pub(super) fn carriers(&self) -> PerContact<Carrier> {
         self.contacts
             .iter()
             .map(|contact| Carrier {
@@ -39,7 +39,7 @@ impl<O: Observer> Walk<'_, O> {
 
     /// Takes from the velocity what would leave or enter a lasting contact; the others learn what that changes.
     pub(super) fn make_tangential(&mut self) {
-        let lasting: Vec<Vector3<f64>> = self.contacts.iter().filter(|c| c.lasting).map(|c| c.normal).collect();
+        let lasting: PerContact<Vector3<f64>> = self.contacts.iter().filter(|c| c.lasting).map(|c| c.normal).collect();
         let before = self.state.velocity;
         self.state.velocity = along(&lasting, before);
         for contact in self.contacts.iter_mut().filter(|c| !c.lasting) {
@@ -72,7 +72,7 @@ impl<O: Observer> Walk<'_, O> {
     /// The four-part rest test: slow, in contact, pressed, and held by friction. A ball that passes it rests.
     fn try_to_rest(&mut self, velocity_in: Vector3<f64>) -> bool {
         self.counters.rest += 1;
-        let carriers: Vec<Carrier> = self.lasting_carriers();
+        let carriers = self.lasting_carriers();
         let still = State { velocity: Vector3::zeros(), ..self.state };
         let a = self.forces.acceleration(&still, &mut self.counters);
         let balance = Balance::of(&a, &carriers, &still);
@@ -97,7 +97,7 @@ impl<O: Observer> Walk<'_, O> {
         self.plan.rest.at((-main.contact.normal.dot(a)).max(0.0)).speed
     }
 
-    fn lasting_carriers(&self) -> Vec<Carrier> {
+    fn lasting_carriers(&self) -> PerContact<Carrier> {
         self.carriers().into_iter().filter(|c| c.contact.lasting).collect()
     }
 
@@ -317,7 +317,7 @@ impl<O: Observer> Walk<'_, O> {
         }
         let tolerance = self.touch_tolerance(0.0);
         let State { position, velocity } = self.state;
-        let touched = self.obstacles.touching(&position, &velocity, tolerance, &mut self.counters);
+        let touched = self.obstacles.touching(&position, &velocity, tolerance, None, &mut self.counters);
         let rounding = rate_rounding(velocity.norm());
         let rises = |c: &&Contact| c.surface == contact.surface && c.site != contact.site && c.rate < -rounding;
         touched.iter().find(rises).and_then(|c| Some((c.surface, c.site?.face())))

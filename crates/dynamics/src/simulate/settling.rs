@@ -1,7 +1,7 @@
 //! The end of bouncing: which contacts hold the ball, and the last hops, summed.
 
 use super::{Settling, Walk};
-use crate::contacts::{Contact, MAX_CONTACTS};
+use crate::contacts::{Contact, MAX_CONTACTS, PerContact};
 use crate::effects::friction::{ContactFriction, Friction};
 use crate::events::Motion;
 use crate::integrators::exact;
@@ -36,11 +36,16 @@ impl<O: Observer> Walk<'_, O> {
     pub(super) fn settle(&mut self, left: Option<Contact>) -> bool {
         let sliding = self.motion == Motion::Sliding;
         let a = self.forces.acceleration(&self.state, &mut self.counters);
+        self.count_low_hops(&a);
+        if self.bounces_on(&a) {
+            self.counters.rest += self.contacts.len() as u64;
+            self.set_flying(left);
+            return false;
+        }
         let carriers = self.carriers();
         let before = self.state.velocity;
         let mut carrying = [false; MAX_CONTACTS];
         let mut settling = None;
-        self.count_low_hops(&a);
         while let Some((i, hop)) = self.next_held(&a, &carriers, &carrying) {
             carrying[i] = true;
             let contact = &carriers[i].contact;
@@ -88,9 +93,9 @@ impl<O: Observer> Walk<'_, O> {
         carriers: &[Carrier],
         carrying: &[bool; MAX_CONTACTS],
     ) -> Option<(usize, Hop)> {
-        let held: Vec<Carrier> = carriers.iter().zip(carrying).filter(|(_, c)| **c).map(|(c, _)| *c).collect();
-        let normals: Vec<Vector3<f64>> = held.iter().map(|c| c.contact.normal).collect();
-        let free = Balance::of(a, &held, &self.state).free;
+        let held: PerContact<Carrier> = carriers.iter().zip(carrying).filter(|(_, c)| **c).map(|(c, _)| *c).collect();
+        let normals: PerContact<Vector3<f64>> = held.iter().map(|c| c.contact.normal).collect();
+        let free = if held.is_empty() { *a } else { Balance::of(a, &held, &self.state).free };
         let velocity = along(&normals, self.state.velocity);
         let neutral = if held.is_empty() { 0.0 } else { rate_rounding(a.norm()) };
         let mut next: Option<(usize, Hop)> = None;
@@ -106,6 +111,16 @@ impl<O: Observer> Walk<'_, O> {
             }
         }
         next
+    }
+
+    /// Whether every contact is left so fast, and has been for so short a time, that bouncing goes on however it is pressed: what presses it is
+    /// not more than all of the acceleration `a`.
+    fn bounces_on(&self, a: &Vector3<f64>) -> bool {
+        let slow = self.plan.rest.at(2.0 * a.norm()).speed;
+        self.standstill < PATIENCE_WITH_HOPS
+            && self.low_hops <= PATIENCE_WITH_LOW_HOPS
+            && self.integrator.timestep().is_none()
+            && self.contacts.iter().all(|c| c.rate > slow)
     }
 
     /// Counts the impacts in a row after which no hop is high.
@@ -149,7 +164,7 @@ impl<O: Observer> Walk<'_, O> {
     /// Whether taking the ball along the contacts that carry would drive it into one that does not.
     fn drives_into_others(&self, carrying: &[bool]) -> bool {
         let contacts = || self.contacts.iter().zip(carrying);
-        let held: Vec<_> = contacts().filter(|(_, carrying)| **carrying).map(|(c, _)| c.normal).collect();
+        let held: PerContact<_> = contacts().filter(|(_, carrying)| **carrying).map(|(c, _)| c.normal).collect();
         let v = along(&held, self.state.velocity);
         let rounding = rate_rounding(self.state.velocity.norm());
         contacts().any(|(c, carrying)| !carrying && c.normal.dot(&v) < -rounding)

@@ -7,11 +7,12 @@ use crate::effects::friction::Friction;
 use crate::effects::grip::{self, Grip};
 use crate::events::{EventKind, Motion};
 use crate::integrators::{Step, exact};
-use crate::observer::{Observer, Turning};
+use crate::observer::Observer;
 use crate::response::{changed_rate, respond};
 use crate::sliding::{Balance, Carrier, Slide};
 use crate::surface::Material;
 use crate::tolerance::{parallel, rate_rounding};
+use crate::turning::Turning;
 use carom_geometry::site::Bend;
 use nalgebra::Vector3;
 

@@ -4,6 +4,7 @@ use super::frame::Frame;
 use super::{Bvh, Child, Node, WIDTH};
 use crate::bounds::Aabb;
 use rayon::prelude::*;
+use wide::f32x4;
 
 /// A group of up to this many items is not split while there is room in the node.
 const LEAF: usize = 2;
@@ -16,27 +17,38 @@ const BINS: usize = 16;
 /// Levels by the heuristic; below, halves by count, at most log2(2^29) / log2(8) levels more.
 const HEURISTIC_LEVELS: usize = 16;
 
-/// An item's box in the tree's coordinates.
+/// An item's box in the tree's coordinates, and its number in the fourth place of `lo`, where no coordinate is: half of a line of the cache.
 #[derive(Debug, Clone, Copy)]
 struct Item {
     bounds: Box32,
-    id: u32,
 }
 
+impl Item {
+    fn new(id: u32, [x, y, z]: [f32; 3], hi: [f32; 3]) -> Self {
+        let lo = f32x4::new([x, y, z, f32::from_bits(id)]);
+        Self { bounds: Box32 { lo, hi: f32x4::new([hi[0], hi[1], hi[2], 0.0]) } }
+    }
+
+    fn id(&self) -> u32 {
+        self.bounds.lo.to_array()[3].to_bits()
+    }
+}
+
+/// A box: its corners, each with a fourth number of no meaning.
 #[derive(Debug, Clone, Copy)]
 struct Box32 {
-    lo: [f32; 3],
-    hi: [f32; 3],
+    lo: f32x4,
+    hi: f32x4,
 }
 
 impl Box32 {
-    const EMPTY: Self = Self { lo: [f32::INFINITY; 3], hi: [f32::NEG_INFINITY; 3] };
+    const EMPTY: Self = Self { lo: f32x4::new([f32::INFINITY; 4]), hi: f32x4::new([f32::NEG_INFINITY; 4]) };
 
+    #[inline]
     fn add(&mut self, other: &Self) {
-        for i in 0..3 {
-            self.lo[i] = if other.lo[i] < self.lo[i] { other.lo[i] } else { self.lo[i] };
-            self.hi[i] = if other.hi[i] > self.hi[i] { other.hi[i] } else { self.hi[i] };
-        }
+        // No coordinate is NaN.
+        self.lo = other.lo.fast_min(self.lo);
+        self.hi = other.hi.fast_max(self.hi);
     }
 
     fn of(items: &[Item]) -> Self {
@@ -47,19 +59,29 @@ impl Box32 {
     }
 
     /// Twice the centre: where an item counts as being.
-    fn middle(&self) -> [f32; 3] {
-        [0, 1, 2].map(|i| self.lo[i] + self.hi[i])
+    #[inline]
+    fn middle(&self) -> f32x4 {
+        self.lo + self.hi
+    }
+
+    /// The sides, 0 if empty.
+    #[inline]
+    fn sides(&self) -> [f32; 3] {
+        let [x, y, z, _] = (self.hi - self.lo).fast_max(f32x4::splat(0.0)).to_array();
+        [x, y, z]
     }
 
     /// Half the surface, to which the chance of being met is proportional; -infinity or NaN never, 0 if empty.
+    #[inline]
     fn area(&self) -> f32 {
-        let [x, y, z] = [0, 1, 2].map(|i| (self.hi[i] - self.lo[i]).max(0.0));
+        let [x, y, z] = self.sides();
         x * y + y * z + z * x
     }
 
     /// Sum of the sides, the measure where there is no surface.
+    #[inline]
     fn girth(&self) -> f32 {
-        (0..3).map(|i| (self.hi[i] - self.lo[i]).max(0.0)).sum()
+        self.sides().iter().sum()
     }
 }
 
@@ -96,7 +118,7 @@ pub(super) fn build(count: usize, box_of: impl Fn(usize) -> Aabb + Sync) -> Bvh 
     let mut items: Vec<Item> = kept()
         .map(|(id, b)| {
             let (lo, hi) = frame.item_box(&b);
-            Item { bounds: Box32 { lo, hi }, id }
+            Item::new(id, lo, hi)
         })
         .collect();
     let all = Group::of(&items, 0, items.len());
@@ -105,7 +127,7 @@ pub(super) fn build(count: usize, box_of: impl Fn(usize) -> Aabb + Sync) -> Bvh 
     Bvh {
         bounds,
         frame,
-        items: items.iter().map(|item| item.id).collect(),
+        items: items.iter().map(Item::id).collect(),
         nodes: whole.nodes,
         // Each level leaves all children but one pending.
         stack: (WIDTH - 1) * whole.levels + WIDTH,
@@ -143,7 +165,7 @@ impl Part {
         };
         for (j, group) in groups[..count].iter().enumerate() {
             let child = if group.len() <= LARGEST_LEAF {
-                items[group.start..group.end].sort_unstable_by_key(|item| item.id);
+                items[group.start..group.end].sort_unstable_by_key(Item::id);
                 Child::leaf(first + group.start, group.len())
             } else if let Some(part) = below[j].take() {
                 Child(self.append(part))
@@ -152,9 +174,10 @@ impl Part {
             };
             let node = &mut self.nodes[number];
             node.child[j] = child;
+            let (lo, hi) = (group.bounds.lo.to_array(), group.bounds.hi.to_array());
             for i in 0..3 {
-                node.planes[i][j] = group.bounds.lo[i];
-                node.planes[i + 3][j] = group.bounds.hi[i];
+                node.planes[i][j] = lo[i];
+                node.planes[i + 3][j] = hi[i];
             }
         }
         number as u32
@@ -200,9 +223,10 @@ fn groups(items: &mut [Item], all: Group, level: usize) -> ([Group; WIDTH], usiz
     while count < WIDTH {
         let by_count = level > HEURISTIC_LEVELS;
         let weight = |g: &Group| if by_count { g.len() as f32 } else { g.bounds.area() };
-        let Some(chosen) = (0..count)
+        let Some((chosen, _)) = (0..count)
             .filter(|&k| groups[k].len() > LEAF)
-            .max_by(|&k, &l| weight(&groups[k]).total_cmp(&weight(&groups[l])).then(l.cmp(&k)))
+            .map(|k| (k, weight(&groups[k])))
+            .max_by(|(k, a), (l, b)| a.total_cmp(b).then(l.cmp(k)))
         else {
             break;
         };
@@ -217,26 +241,28 @@ fn groups(items: &mut [Item], all: Group, level: usize) -> ([Group; WIDTH], usiz
     (groups, count)
 }
 
-/// How an axis is cut into bins.
+/// How the axes are cut into bins.
 #[derive(Debug, Clone, Copy)]
 struct Binning {
-    axis: usize,
-    from: f32,
-    per_length: f32,
+    from: f32x4,
+    per_length: f32x4,
     count: usize,
 }
 
 impl Binning {
-    fn bin(&self, item: &Item) -> usize {
-        let middle = item.bounds.lo[self.axis] + item.bounds.hi[self.axis];
+    /// The bins of an item by axis; the fourth means nothing.
+    #[inline]
+    fn bins(&self, item: &Item) -> [usize; 4] {
+        let bins = (item.bounds.middle() - self.from) * self.per_length;
         // NaN, from 0 times infinity when the axis is shorter than f32 can divide by, becomes bin 0.
-        (((middle - self.from) * self.per_length) as usize).min(self.count - 1)
+        bins.to_array().map(|bin| (bin as usize).min(self.count - 1))
     }
 }
 
-/// Items in bins below `first_right` go left.
+/// Items in bins of `axis` below `first_right` go left.
 struct Cut {
     binning: Binning,
+    axis: usize,
     first_right: usize,
 }
 
@@ -245,7 +271,7 @@ impl Cut {
     fn divide(&self, items: &mut [Item]) -> usize {
         let mut left = 0;
         for k in 0..items.len() {
-            if self.binning.bin(&items[k]) < self.first_right {
+            if self.binning.bins(&items[k])[self.axis] < self.first_right {
                 items.swap(left, k);
                 left += 1;
             }
@@ -256,7 +282,8 @@ impl Cut {
 
 /// The cut with the least sum of measure times count; `None` if all items are at one place.
 fn best_cut(items: &[Item], bounds: &Box32) -> Option<Cut> {
-    let measure = if bounds.area() > 0.0 { Box32::area } else { Box32::girth };
+    let has_area = bounds.area() > 0.0;
+    let measure = |b: &Box32| if has_area { b.area() } else { b.girth() };
     let places = items.iter().fold(Box32::EMPTY, |mut b, item| {
         let middle = item.bounds.middle();
         b.add(&Box32 { lo: middle, hi: middle });
@@ -264,18 +291,21 @@ fn best_cut(items: &[Item], bounds: &Box32) -> Option<Cut> {
     });
     // Few items: few bins find as good a cut.
     let count = (2 * items.len()).min(BINS);
-    let mut best: Option<(f32, Cut)> = None;
-    for axis in 0..3 {
-        let length = places.hi[axis] - places.lo[axis];
-        if length <= 0.0 {
-            continue;
-        }
-        let binning = Binning { axis, from: places.lo[axis], per_length: count as f32 / length, count };
-        let mut bins = [(Box32::EMPTY, 0usize); BINS];
-        for item in items {
-            let (bounds, number) = &mut bins[binning.bin(item)];
+    let lengths = places.hi - places.lo;
+    let binning = Binning { from: places.lo, per_length: f32x4::splat(count as f32) / lengths, count };
+    // All axes at once: of what takes long, the items are looked at once.
+    let mut all_bins = [[(Box32::EMPTY, 0usize); BINS]; 3];
+    for item in items {
+        for (bins, bin) in all_bins.iter_mut().zip(binning.bins(item)) {
+            let (bounds, number) = &mut bins[bin];
             bounds.add(&item.bounds);
             *number += 1;
+        }
+    }
+    let mut best: Option<(f32, Cut)> = None;
+    for (axis, bins) in all_bins.iter().enumerate() {
+        if lengths.to_array()[axis] <= 0.0 {
+            continue;
         }
         let mut right = [0.0; BINS];
         let mut sum = (Box32::EMPTY, 0);
@@ -290,7 +320,7 @@ fn best_cut(items: &[Item], bounds: &Box32) -> Option<Cut> {
             sum.1 += bins[first_right - 1].1;
             let cost = measure(&sum.0) * sum.1 as f32 + right[first_right];
             if (1..items.len()).contains(&sum.1) && best.as_ref().is_none_or(|(least, _)| cost < *least) {
-                best = Some((cost, Cut { binning, first_right }));
+                best = Some((cost, Cut { binning, axis, first_right }));
             }
         }
     }
@@ -300,11 +330,13 @@ fn best_cut(items: &[Item], bounds: &Box32) -> Option<Cut> {
 /// Puts the half with the lower places, along the axis on which they differ most, to the front; returns its size.
 fn halve(items: &mut [Item]) -> usize {
     let bounds = Box32::of(items);
-    let length = |i: usize| bounds.hi[i] - bounds.lo[i];
+    let lengths = (bounds.hi - bounds.lo).to_array();
+    let length = |i: usize| lengths[i];
     let axis = (1..3).fold(0, |best, i| if length(i) > length(best) { i } else { best });
     let half = items.len() / 2;
     items.select_nth_unstable_by(half, |a, b| {
-        a.bounds.middle()[axis].total_cmp(&b.bounds.middle()[axis]).then(a.id.cmp(&b.id))
+        let place = |item: &Item| item.bounds.middle().to_array()[axis];
+        place(a).total_cmp(&place(b)).then(a.id().cmp(&b.id()))
     });
     half
 }

@@ -3,6 +3,7 @@
 use super::{FatSegment, WIDTH};
 use crate::bounds::{Aabb, largest, least};
 use crate::rounding::{UNIT_ROUNDOFF, gamma, segment_bound, segment_bound_f32};
+use wide::f32x8;
 
 /// A margin beyond this is so much larger than the tree, which has a half extent of 1, that no box can be told apart.
 const HOPELESS: f64 = 1048576.0;
@@ -26,8 +27,9 @@ pub(super) struct Frame {
 pub(super) struct LocalSegment {
     start: f64,
     end: f64,
-    /// For each axis: which planes are met first, and the points from which the near and the far one are measured.
-    near: [usize; 3],
+    /// For each axis: whether the planes with the lower coordinates are met first, and the points from which the near and the far one are
+    /// measured.
+    forward: [bool; 3],
     near_from: [f32; 3],
     far_from: [f32; 3],
     inverse: [f32; 3],
@@ -131,7 +133,7 @@ impl LocalSegment {
         Self {
             start,
             end,
-            near: [0, 1, 2].map(|i| if forward[i] { i } else { i + 3 }),
+            forward,
             near_from: [0, 1, 2].map(|i| if forward[i] { a[i] + radius } else { a[i] - radius }),
             far_from: [0, 1, 2].map(|i| if forward[i] { a[i] - radius } else { a[i] + radius }),
             inverse: step.map(|c| (if c >= 0.0 { 1.0 } else { -1.0 }) / c.abs().max(LEAST_STEP)),
@@ -141,23 +143,16 @@ impl LocalSegment {
     /// For each child a lower bound of where it is entered, in [0, 1], and a bit for each that is met up to `limit`.
     #[inline]
     pub(super) fn entries(&self, planes: &[[f32; WIDTH]; 6], limit: f32) -> ([f32; WIDTH], u32) {
-        let (mut entry, mut exit) = ([0.0_f32; WIDTH], [limit; WIDTH]);
+        let (mut entry, mut exit) = (f32x8::splat(0.0), f32x8::splat(limit));
         for i in 0..3 {
-            let near = &planes[self.near[i]];
-            let far = &planes[(self.near[i] + 3) % 6];
-            let (near_from, far_from, inverse) = (self.near_from[i], self.far_from[i], self.inverse[i]);
-            for j in 0..WIDTH {
-                // Plain comparisons: there are no NaN, and `f32::max` would look for them.
-                let (t, w) = ((near[j] - near_from) * inverse, (far[j] - far_from) * inverse);
-                entry[j] = if t > entry[j] { t } else { entry[j] };
-                exit[j] = if w < exit[j] { w } else { exit[j] };
-            }
+            let (near, far) = if self.forward[i] { (i, i + 3) } else { (i + 3, i) };
+            let (near, far) = (f32x8::new(planes[near]), f32x8::new(planes[far]));
+            let inverse = f32x8::splat(self.inverse[i]);
+            // There are no NaN, which `max` and `min` would look for.
+            entry = entry.fast_max((near - f32x8::splat(self.near_from[i])) * inverse);
+            exit = exit.fast_min((far - f32x8::splat(self.far_from[i])) * inverse);
         }
-        let mut bits = [0_u32; WIDTH];
-        for j in 0..WIDTH {
-            bits[j] = if entry[j] <= exit[j] { 1 << j } else { 0 };
-        }
-        (entry, bits.iter().fold(0, |met, bit| met | bit))
+        (entry.to_array(), entry.simd_le(exit).to_bitmask())
     }
 
     /// The caller's limit of s as one of this part, rounded up.

@@ -2,6 +2,8 @@
 
 use super::*;
 use crate::path::Path;
+use crate::site::Site;
+use nalgebra::{Point3, Vector3};
 
 const TOLERANCE: f64 = 1e-6;
 
