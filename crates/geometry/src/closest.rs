@@ -2,7 +2,7 @@
 
 use crate::bounds::{amax, largest};
 use crate::normal::cross_compensated;
-use crate::rounding::{LEAST_SINE_SQUARED, NEEDLE_SINE_SQUARED, exponent, scale};
+use crate::rounding::{LEAST_SINE_SQUARED, NEEDLE_SINE_SQUARED, exponent, power_of_two, scale};
 use nalgebra::{Point3, Vector3};
 
 /// Which part of a triangle.
@@ -51,8 +51,8 @@ pub fn closest_point(triangle: &[Point3<f64>; 3], x: &Point3<f64>) -> Closest {
 /// Exponents of coordinate differences for which products of four neither overflow nor lose what matters.
 const DIRECT_RANGE: std::ops::Range<i32> = -200..250;
 /// The same range as numbers.
-const LEAST_DIRECT: f64 = f64::from_bits((1023 - 200) << 52);
-const LIMIT_OF_DIRECT: f64 = f64::from_bits((1023 + 250) << 52);
+const LEAST_DIRECT: f64 = power_of_two(DIRECT_RANGE.start);
+const LIMIT_OF_DIRECT: f64 = power_of_two(DIRECT_RANGE.end);
 
 /// A triangle that is asked for more than one closest point: what depends on it alone is computed once.
 pub(crate) struct Asked {

@@ -146,8 +146,13 @@ pub fn exponent(x: f64) -> i32 {
 }
 
 /// 2^k, exactly; `k` is brought into -1022..=1023 first.
-pub fn power_of_two(k: i32) -> f64 {
-    f64::from_bits(((k.clamp(-1022, 1023) + 1023) as u64) << 52)
+pub const fn power_of_two(k: i32) -> f64 {
+    let k = match k {
+        ..-1022 => -1022,
+        1024.. => 1023,
+        k => k,
+    };
+    f64::from_bits(((k + 1023) as u64) << 52)
 }
 
 /// x 2^k; exact unless the result is subnormal or too large. `k` in -2044..=2046.

@@ -1,8 +1,8 @@
 //! The reference solver: one ball from event to event, in more than twice the digits of f64.
 //!
 //! It shares nothing with the solver under test but the scene: flights are Taylor series, surfaces are asked one by one, impacts are answered by
-//! the formulas of the chapter. What it does not do (slide where that has no closed form, answer several surfaces at
-//! once) ends the course, and the comparison with it.
+//! the formulas of the chapter, or of grip and slip. What it does not do (slide or roll where that has no closed form, answer several surfaces
+//! at once) ends the course, and the comparison with it.
 
 use super::real::{Real, Vector, add, cross, dot, norm, point, rounded, scale, sub, vector};
 use super::settle::{Settled, settle};
@@ -81,7 +81,7 @@ pub fn follow(setting: &Setting, ball: &Ball, field: &Field, shift: &Vector) -> 
         field: field.clone(),
         planes: setting.world.planes(&start.position, &start.velocity),
         radius: Real::from(ball.radius()),
-        face_radius: Real::from(ball.radius().max(plan.point_radius)),
+        face_radius: Real::from(plan.radius_at_meshes(ball)),
         touch: Real::from(plan.farthest.max(f64::MIN_POSITIVE) * 2f64.powi(-100)),
         x: add(&point(&start.position), shift),
         v: vector(&start.velocity),

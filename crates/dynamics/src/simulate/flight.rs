@@ -169,7 +169,7 @@ impl<O: Observer> Walk<'_, O> {
     /// Whether contacts that lose energy have answered each other without time passing for so long that there is no end to it; then
     /// `contacts` are all that took part.
     fn collapses(&mut self, contacts: &mut Contacts, tolerance: f64) -> bool {
-        let radius = self.forces.ball.radius().max(self.plan.point_radius);
+        let radius = self.plan.radius_at_meshes(self.forces.ball);
         if self.standstill == 0 {
             self.answered.clear();
         }

@@ -4,7 +4,7 @@ use super::Work;
 use crate::bounds::Aabb;
 use crate::closest::Asked;
 use crate::mesh::Mesh;
-use crate::rounding::position_bound;
+use crate::rounding::{contact_doubt, position_bound};
 use crate::screen::is_off_plane;
 use nalgebra::{Point3, Vector3};
 use smallvec::SmallVec;
@@ -60,7 +60,6 @@ impl Surroundings {
 
     /// The distance at which [`left_at`](Self::left_at) has to know what is near, after ways of up to `reach`.
     pub(super) fn within(&self, reach: f64) -> f64 {
-        use crate::rounding::contact_doubt;
         if self.extent > 0.0 {
             contact_doubt(self.extent + 2.0 * reach) + position_bound(self.extent + reach)
         } else {

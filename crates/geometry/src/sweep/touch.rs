@@ -100,7 +100,8 @@ impl Mesh {
         }
     }
 
-    /// The normal at a touched site: the face's own on a face and on a flat edge, else from the touched point to the centre.
+    /// The normal at a touched site: the face's own on a face and on a flat edge, else from the touched point to the centre, within the cone of what
+    /// is nearest there.
     fn normal_at(&self, site: Site, away: &Vector3<f64>) -> Option<Vector3<f64>> {
         match site {
             Site::Edge { face, edge } if self.fold(face, edge.into()) == Fold::Flat => self.facing(face, away),
