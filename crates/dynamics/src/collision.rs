@@ -18,7 +18,7 @@ use carom_geometry::rounding::contact_doubt;
 use carom_geometry::site::{Bend, RegionBound, Site};
 use carom_geometry::sweep::{Surroundings, Work};
 use nalgebra::{Point3, Vector3};
-use returning::leaves_region;
+use returning::slides_over;
 use std::cmp::Ordering;
 
 /// The earliest collision of a step.
@@ -112,7 +112,7 @@ impl<'a> Obstacles<'a> {
         let mut first: Option<(f64, RegionBound)> = None;
         for bound in self.mesh(contact.surface)?.region(contact.site?) {
             counters.clearances += 1;
-            if let Entry::At { f, .. } = leaves_region(step, &bound, from)
+            if let Entry::At { f, .. } = slides_over(step, &bound, from)
                 && first.is_none_or(|(best, _)| f < best)
             {
                 first = Some((f, bound));

@@ -94,11 +94,27 @@ fn leaves_until(step: &Step, bend: Bend, radius: f64, slope: f64) -> f64 {
     if further == 0.0 { until } else { until.min((gain / (8.0 * radius * further)).max(0.0)) }
 }
 
-/// Where the step, after `from`, crosses a bound of the region of a place.
-pub(super) fn leaves_region(step: &Step, bound: &RegionBound, from: f64) -> Entry {
+/// Where the step crosses a bound of the region of a place.
+fn leaves_region(step: &Step, bound: &RegionBound) -> Entry {
     let inward = -bound.outward;
     let gap = inward.dot(&(step.path.start() - bound.point));
-    step.path.clearance(gap, &inward).first_entry(from, step.to)
+    step.path.clearance(gap, &inward).first_entry(0.0, step.to)
+}
+
+/// The same after `from`, for a ball that stays on the place until then. What moves along the bound to rounding is led over it by its acceleration or
+/// not at all: in a groove of two faces, neither would ever have the ball if the rounding of a velocity took it from both.
+pub(super) fn slides_over(step: &Step, bound: &RegionBound, from: f64) -> Entry {
+    let inward = -bound.outward;
+    let mut c = [inward.dot(&(step.path.start() - bound.point)), 0.0, 0.0, 0.0, 0.0];
+    for (c, term) in c.iter_mut().skip(1).zip(step.path.terms()) {
+        *c = inward.dot(term);
+    }
+    if let Some(first) = step.path.terms().first()
+        && c[1].abs() <= rate_rounding(first.norm())
+    {
+        c[1] = 0.0;
+    }
+    Clearance::new(c).first_entry(from, step.to)
 }
 
 impl Obstacles<'_> {
@@ -147,7 +163,7 @@ impl Obstacles<'_> {
             free.here = leaves_until(step, self.bend(contact), self.radius_at(contact), slope);
             for bound in self.mesh(surface)?.region(site) {
                 counters.clearances += 1;
-                if let Entry::At { f, .. } = leaves_region(step, &bound, 0.0) {
+                if let Entry::At { f, .. } = leaves_region(step, &bound) {
                     free.exits.push((bound.next, f));
                 }
             }
