@@ -185,6 +185,16 @@ impl<'a> Obstacles<'a> {
         contact_doubt(size + step.path.reach(hit.f))
     }
 
+    /// What the search that found `hit` has seen of its face, if a ball at `position` with `velocity` closes in on that.
+    pub fn seen(&self, hit: &Hit, position: &Point3<f64>, velocity: &Vector3<f64>) -> Option<Contact> {
+        let (face, mesh) = hit.face.zip(self.mesh(hit.surface))?;
+        let touch = mesh.nearest_of(face, position)?;
+        let rate = touch.normal.dot(velocity);
+        let contact =
+            Contact { surface: hit.surface, site: Some(touch.site), normal: touch.normal, rate, lasting: false };
+        (rate < 0.0).then_some(contact)
+    }
+
     /// The contacts of a ball at `position` with `velocity`, to within `tolerance` (m), each with its rate n.v. If that is where it is at
     /// `f` of the step that the [`earliest`](Self::earliest) hit was asked for, they need not be looked for again.
     ///
