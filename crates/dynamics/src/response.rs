@@ -11,56 +11,64 @@ use crate::effects::friction::Friction;
 use crate::support::project;
 use crate::surface::Material;
 use crate::tolerance::rate_rounding;
+use carom_geometry::bounds::amax;
 use nalgebra::Vector3;
 
 /// Repeats of the response before restitution is given up for what is left (H19: acute normals may close again).
 const MAX_REPEATS: u32 = 32;
 
 /// The velocity after an impact with velocity `v` (m/s), of which at least one of `contacts` is closing; leaves in each contact the
-/// rate with which it separates. `materials[i]` is what contact i is made of.
-pub fn respond(
+/// rate with which it separates. `material` is what a contact is made of.
+pub fn respond<'m>(
     v: Vector3<f64>,
     contacts: &mut [Contact],
-    materials: &[Material],
+    material: impl Fn(&Contact) -> &'m Material,
     counters: &mut Counters,
 ) -> Vector3<f64> {
-    let after = match contacts.iter().filter(|c| c.rate < 0.0).count() {
-        1 => respond_to_one(v, contacts, materials, counters),
+    let mut closing = contacts.iter().enumerate().filter(|(_, c)| c.rate < 0.0);
+    let after = match (closing.next(), closing.next()) {
+        (Some((hit, contact)), None) => {
+            let material = material(contact);
+            respond_to_one(v, contacts, hit, material, counters)
+        }
         _ => None,
     };
-    after.unwrap_or_else(|| respond_to_all(v, contacts, materials, counters))
+    after.unwrap_or_else(|| {
+        let materials: PerContact<Material> = contacts.iter().map(|c| *material(c)).collect();
+        respond_to_all(v, contacts, &materials, counters)
+    })
 }
 
-/// The chapter's response to the only closing contact; none if it drives the ball into another.
+/// The chapter's response to the only closing contact, which is number `hit`; none if it drives the ball into another.
 fn respond_to_one(
     v: Vector3<f64>,
     contacts: &mut [Contact],
-    materials: &[Material],
+    hit: usize,
+    material: &Material,
     counters: &mut Counters,
 ) -> Option<Vector3<f64>> {
-    let hit = contacts.iter().position(|c| c.rate < 0.0)?;
     let (n, closing) = (contacts[hit].normal, -contacts[hit].rate);
-    let c_r = materials[hit].restitution.at(closing);
+    let c_r = material.restitution.at(closing);
     // A rounded unit normal is off by the same u at each of a million bounces: divided by its square, it is not.
     let square = n.norm_squared();
     let v_t = v - n * (n.dot(&v) / square);
-    let rebound = materials[hit].restitution.rebound(closing);
-    let friction = &materials[hit].friction;
+    let rebound = c_r * closing;
+    let friction = &material.friction;
     let mut after = slowed(friction, v_t, closing, c_r, counters) + n * (rebound / square);
     // Rounding must not gain energy; nor lose it where nothing does.
     // In units of the largest component: squares of small speeds vanish.
-    let unit = v.amax();
+    let unit = amax(&v);
     let (had, has) = ((v / unit).norm_squared(), (after / unit).norm_squared());
     if has > had || (c_r == 1.0 && *friction == Friction::None) {
         after *= (had / has).sqrt();
     }
-    let rates = |i: usize, c: &Contact| if i == hit { rebound } else { changed_rate(c, &v, &after) };
-    if contacts.iter().enumerate().any(|(i, c)| rates(i, c) < 0.0) {
+    let drives = |(i, c): (usize, &Contact)| i != hit && changed_rate(c, &v, &after) < 0.0;
+    if contacts.iter().enumerate().any(drives) {
         return None;
     }
     counters.restitution += 1;
     for (i, contact) in contacts.iter_mut().enumerate() {
-        contact.rate = rates(i, contact);
+        contact.rate = if i == hit { rebound } else { changed_rate(contact, &v, &after) };
     }
     Some(after)
 }
@@ -169,7 +177,7 @@ mod tests {
 
     fn answer(v: Vector3<f64>, normals: &[Vector3<f64>], m: Material) -> Vector3<f64> {
         let mut touched = contacts(&v, normals);
-        respond(v, &mut touched, &vec![m; normals.len()], &mut Counters::default())
+        respond(v, &mut touched, |_| &m, &mut Counters::default())
     }
 
     #[test]
@@ -214,7 +222,7 @@ mod tests {
             let normals = [Vector3::z(), Vector3::new(angle.sin(), 0.0, angle.cos())];
             let v = Vector3::new(-1.0, 0.3, -1.0);
             let mut touched = contacts(&v, &normals);
-            let after = respond(v, &mut touched, &[m, m], &mut Counters::default());
+            let after = respond(v, &mut touched, |_| &m, &mut Counters::default());
             assert!(after.norm() <= v.norm() * (1.0 + 4.0 * UNIT_ROUNDOFF));
             assert!(touched.iter().all(|c| c.rate >= 0.0));
             assert!(normals.iter().all(|n| n.dot(&after) >= -1e-14), "{k}");
