@@ -9,7 +9,8 @@ use crate::contacts::{Contact, Contacts, MAX_CONTACTS, PerContact};
 use crate::counters::Counters;
 use crate::integrators::Step;
 use crate::plan::Plan;
-use crate::tolerance::{merge_angle_squared, rate_rounding};
+use crate::tolerance::{merge_angle_squared, rate_rounding, touch_distance};
+use carom_geometry::bounds::amax;
 use carom_geometry::clearance::Entry;
 use carom_geometry::contact::{Hold, MovingBall};
 use carom_geometry::mesh::{Fold, Mesh};
@@ -111,9 +112,10 @@ impl<'a> Obstacles<'a> {
         counters: &mut Counters,
     ) -> Option<(f64, RegionBound)> {
         let mut first: Option<(f64, RegionBound)> = None;
+        let slack = touch_distance(self.plan.farthest + amax(&step.path.start().coords), 0.0);
         for bound in self.mesh(contact.surface)?.region(contact.site?) {
             counters.clearances += 1;
-            if let Entry::At { f, .. } = slides_over(step, &bound, from)
+            if let Entry::At { f, .. } = slides_over(step, &bound, from, slack)
                 && first.is_none_or(|(best, _)| f < best)
             {
                 first = Some((f, bound));

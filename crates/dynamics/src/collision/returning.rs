@@ -75,20 +75,13 @@ fn leaves_region(step: &Step, bound: &RegionBound) -> Entry {
     step.path.clearance(gap, &inward).first_entry(0.0, step.to)
 }
 
-/// The same after `from`, for a ball that stays on the place until then. What moves along the bound to rounding is led over it by its acceleration or
-/// not at all: in a groove of two faces, neither would ever have the ball if the rounding of a velocity took it from both.
-pub(super) fn slides_over(step: &Step, bound: &RegionBound, from: f64) -> Entry {
+/// The same after `from`, for a ball that stays on the place until then. Where it starts from the bound to within `slack` (m), it leaves only by more than
+/// that: what moves along the bound would otherwise be taken from both sides of it by the rounding of its velocity or its place, without end.
+pub(super) fn slides_over(step: &Step, bound: &RegionBound, from: f64, slack: f64) -> Entry {
     let inward = -bound.outward;
-    let mut c = [inward.dot(&(step.path.start() - bound.point)), 0.0, 0.0, 0.0, 0.0];
-    for (c, term) in c.iter_mut().skip(1).zip(step.path.terms()) {
-        *c = inward.dot(term);
-    }
-    if let Some(first) = step.path.terms().first()
-        && c[1].abs() <= rate_rounding(first.norm())
-    {
-        c[1] = 0.0;
-    }
-    Clearance::new(c).first_entry(from, step.to)
+    let gap = inward.dot(&(step.path.start() - bound.point));
+    let gap = if from == 0.0 && gap.abs() <= slack { slack } else { gap };
+    step.path.clearance(gap, &inward).first_entry(from, step.to)
 }
 
 /// A ball that leaves a contact with a mesh, and returns to it.

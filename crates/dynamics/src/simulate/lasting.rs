@@ -165,8 +165,7 @@ impl<O: Observer> Walk<'_, O> {
             settling.seconds -= step.time(to);
         }
         self.cross_level(&crossings, to);
-        // What the ball has not got away from by more than rounding, it has not left: it would be found again where it is.
-        if step.path.reach(to) > self.touch_tolerance(0.0) {
+        if to > 0.0 {
             self.leave_behind();
         }
         self.hold_to_surface();
