@@ -7,6 +7,7 @@ use carom_dynamics::counters::Counters;
 use carom_dynamics::integrators::{Step, exact};
 use carom_dynamics::plan::Plan;
 use carom_geometry::mesh::Mesh;
+use carom_geometry::path::Path;
 use carom_geometry::rounding::contact_doubt;
 use carom_geometry::site::Site;
 use carom_tests::solids;
@@ -109,4 +110,25 @@ fn a_surface_continues_over_faces_of_one_normal_however_they_are_wound() {
     let continues = |here, there| at.continues(&resting(Site::Face(here), Vector3::z()), Site::Face(there));
     assert_eq!([continues(0, 1), continues(0, 2), continues(2, 1), continues(0, 3)], [true, true, true, false]);
     assert!(!at.continues(&resting(Site::Face(0), Vector3::z()), Site::Edge { face: 0, edge: 0 }));
+}
+
+#[test]
+fn r28_a_ball_that_leaves_an_edge_along_a_curve_is_back_on_time() {
+    // A blade with its edge along y, and a ball that goes straight up from it by v f - f^2 - d f^3 - e f^4: back where that is 0.
+    let blade = vec![Point3::new(0.0, -4.0, 0.0), Point3::new(0.0, 4.0, 0.0), Point3::new(0.0, 0.0, -4.0)];
+    let (back, radius) = (0.75f64, RADIUS);
+    let plan = stage(blade, vec![[0, 1, 2]]);
+    for (d, e) in [(0.0, 0.0), (0.5, 0.0), (0.0, 0.5), (0.25, 0.25), (16.0, 16.0)] {
+        let v = back + d * back.powi(2) + e * back.powi(3);
+        let terms = [v, -1.0, -d, -e].map(|z| Vector3::z() * z);
+        let [v1, v2, v3, v4] = [0, 1, 2, 3].map(|k| terms[k] * (k + 1) as f64);
+        let path = Path::from_terms(Point3::new(0.0, 0.0, radius), &terms);
+        let step = Step { path, velocity: [v1, v2, v3, v4, Vector3::zeros()], seconds: 1.0, to: 1.0, exact: true };
+        let leaving = Contact { rate: v, ..resting(Site::Edge { face: 0, edge: 0 }, Vector3::z()) };
+        let (mut at, mut counters) = (obstacles(&plan, &step), Counters::default());
+        let returns = at.returns(&step, &[leaving], &mut counters);
+        let hit = at.earliest(&step, &[leaving], &returns, &mut counters).map(|hit| hit.f);
+        let early = hit.map(|f| (back - f) * (1.0 + 2.0 * back + 3.0 * d * back.powi(2) + 4.0 * e * back.powi(3) - v));
+        assert!(early.is_some_and(|gap| (-1e-15..contact_doubt(8.0 + v)).contains(&gap)), "{hit:?} with {d} and {e}");
+    }
 }

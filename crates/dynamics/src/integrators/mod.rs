@@ -110,6 +110,15 @@ impl Step {
         State { position: self.path.at(f), velocity }
     }
 
+    /// The acceleration of the path at `f`, in m/s^2.
+    pub fn acceleration(&self, f: f64) -> Vector3<f64> {
+        let mut sum = Vector3::zeros();
+        for (k, term) in self.path.terms().iter().enumerate().skip(1).rev() {
+            sum = sum * f + term * ((k + 1) * k) as f64;
+        }
+        sum / (self.seconds * self.seconds)
+    }
+
     /// The state at the end of the step.
     pub fn end(&self) -> State {
         self.at(self.to)

@@ -90,6 +90,7 @@ impl<O: Observer> Walk<'_, O> {
             self.correct(contact, tolerance);
         }
         self.contacts = contacts;
+        self.bound = Some(Bound { time: 0.0, position: tolerance });
         self.settle(None);
     }
 
@@ -150,20 +151,21 @@ impl<O: Observer> Walk<'_, O> {
     fn bound(&self, step: &Step, hit: &Hit, tolerance: f64, contacts: &[Contact]) -> Option<Bound> {
         let doubt = tolerance.max(touch_distance(self.plan.farthest, step.path.reach(hit.f)));
         let velocity = step.path.derivative(hit.f) / step.seconds;
-        let mut acceleration = Vector3::zeros();
-        for (k, term) in step.path.terms().iter().enumerate().skip(1).rev() {
-            acceleration = acceleration * hit.f + term * ((k + 1) * k) as f64;
-        }
-        acceleration /= step.seconds * step.seconds;
+        let acceleration = step.acceleration(hit.f);
         let time = |c: &Contact| {
             let across = self.obstacles.bend(c).across(&velocity).norm_squared() / self.obstacles.radius_at(c);
             let bend = c.normal.dot(&acceleration).abs() + if across > 0.0 { across } else { 0.0 };
             impact_time_bound(doubt, -c.rate, bend)
         };
         let closing = contacts.iter().filter(|c| c.rate < 0.0 && c.surface == hit.surface);
+        Some(self.bound_of(&velocity, closing.map(time).reduce(f64::max)?, doubt))
+    }
+
+    /// What happens now while the ball moves with `velocity`, if its time is known to `seconds` and its place, at any time, to `doubt` (m).
+    pub(super) fn bound_of(&self, velocity: &Vector3<f64>, seconds: f64, doubt: f64) -> Bound {
         let now = self.clock.now();
-        let time = closing.map(time).reduce(f64::max)?.min(now) + clock_bound(now);
-        Some(Bound { time, position: doubt + velocity.norm() * time })
+        let time = seconds.min(now) + clock_bound(now);
+        Bound { time, position: doubt + velocity.norm() * time }
     }
 
     /// Whether contacts that lose energy have answered each other without time passing for so long that there is no end to it; then
