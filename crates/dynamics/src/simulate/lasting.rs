@@ -207,7 +207,8 @@ impl<O: Observer> Walk<'_, O> {
         let velocity = step.path.derivative(to) / step.seconds;
         let seconds = match exit {
             Some(bound) => {
-                let bend = bound.outward.dot(&step.acceleration(to)).abs();
+                let acceleration = step.path.second_derivative(to) / (step.seconds * step.seconds);
+                let bend = bound.outward.dot(&acceleration).abs();
                 impact_time_bound(doubt, bound.outward.dot(&velocity), bend)
             }
             None if step.exact => stretch_bound(step.time(to)),

@@ -13,7 +13,7 @@ use nalgebra::{Point3, Vector3};
 use smallvec::SmallVec;
 
 /// A path is cut no finer than into pieces whose sagitta is this share of the larger of the radius and a face's size.
-const SAGITTA_SHARE: f64 = 0.0625;
+const SAGITTA_SHARE: f64 = 0.125;
 
 /// A little later than 1: where a path is back where it was, with room for rounding and for a surface that falls away.
 const JUST_AFTER: f64 = 1.0 + 1.0 / 64.0;
@@ -212,14 +212,16 @@ impl<F: Fn(u32) -> f64> Search<'_, F> {
         if self.ball.holds.is_empty() {
             return 0.0;
         }
+        let held = self.ball.held_off(&self.mesh.triangle(face), 0.0);
+        if held > self.limit {
+            self.hidden.push(face);
+            return held;
+        }
         let known = (self.free_until)(face);
-        let free = self.ball.held_off(&self.mesh.triangle(face), known);
         if known > self.limit {
             self.left.faces.push((face, f64::INFINITY));
-        } else if free > self.limit {
-            self.hidden.push(face);
         }
-        free
+        largest(held, known)
     }
 
     /// Whether the ball is well off what its holds hide, where the piece ends.
