@@ -20,7 +20,7 @@ pub(super) const CASES: &[Case] = &[
     },
     Case {
         id: "H22",
-        title: "restitution 1, 100 000 bounces on a level floor",
+        title: "restitution 1, 1 000 000 bounces on a level floor",
         elsewhere: "energy grows with each bounce (Jolt #1286, rapier #97) or is lost (bullet3 #1530: 10 m to 4.5 m)",
         bound: "each impact the same speed to the bit; clock off by at most n u",
         run: level_bounces,
