@@ -136,3 +136,6 @@ pub(crate) fn is_off_plane(corners: &[Vector3<f64>; 3], normal: &Vector3<f64>, r
     let (a, b, c) = (normal.dot(a), normal.dot(b), normal.dot(c));
     least(least(a, b), c) > reach || largest(largest(a, b), c) < -reach
 }
+
+#[cfg(test)]
+mod tests;
