@@ -28,7 +28,7 @@ impl Mesh {
         let segment = FatSegment { from: *from, to: *to, radius: 0.0 };
         work.nodes += self.bvh().visit(&segment, |face| {
             work.triangles += 1;
-            if let SegmentHit::Hit { f, feature, .. } = sheared.hits(&self.triangle(face))
+            if let SegmentHit::Hit { f, feature, .. } = sheared.hits(self.corners(face))
                 && best.is_none_or(|found| (f, face) < (found.f, found.face))
             {
                 best = Some(Pierced { f, face, feature });

@@ -37,10 +37,11 @@ pub fn orient3d_bound(permanent: f64, column: f64) -> f64 {
 /// `across` for the last subtraction, where |r| <= `across` + |z|: together less than 8 u m, m = `across` + `along`. Four such
 /// errors times `across`, two of their squares, and the roundings of the products and the difference, 6 u `across`^2, are
 /// below 40 u `across` m + 128 u^2 m^2; what is over covers the rounding of the bound. Products that underflow are
-/// off by a spacing each, and so are coordinates: the smallest normal number is given.
+/// off by a spacing each, and so are coordinates: the smallest normal number is given. No product is larger than `across` m, so that
+/// the bound is infinite where one of them is.
 pub(crate) fn sheared_bound(across: f64, along: f64) -> f64 {
     let m = across + along;
-    64.0 * UNIT_ROUNDOFF * m * (across + 4.0 * UNIT_ROUNDOFF * m) + f64::MIN_POSITIVE * (across + 2.0)
+    64.0 * UNIT_ROUNDOFF * (m * (across + 4.0 * UNIT_ROUNDOFF * m)) + f64::MIN_POSITIVE * (across + 2.0)
 }
 
 /// Bound on the error of n.(x - p) as computed from f64 n, x and p: `magnitude` = fl(|n1 d1| + |n2 d2| + |n3 d3|), d = fl(x - p).
@@ -253,6 +254,11 @@ mod tests {
         }
         assert_eq!((orient2d_bound(0.0), signed_distance_bound(0.0)), (f64::from_bits(2), f64::from_bits(2)));
         assert_eq!(orient3d_bound(0.0, 3.0), 5.0 * f64::MIN_POSITIVE);
+        assert!(is_units(sheared_bound(2.0, 6.0), 1024.0, 1.0) && sheared_bound(0.0, 1.0) > scale(1.0, -99));
+        assert_eq!(
+            (sheared_bound(0.0, 0.0), sheared_bound(scale(1.0, 520), 0.0)),
+            (2.0 * f64::MIN_POSITIVE, f64::INFINITY)
+        );
         assert_eq!(vector_area_bound(0.0, 3), 3.0 * f64::MIN_POSITIVE);
         assert_eq!(NORMAL_BOUND, VECTOR_AREA_BOUND + 8.0 * UNIT_ROUNDOFF);
     }

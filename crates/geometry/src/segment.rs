@@ -46,17 +46,17 @@ pub enum SegmentHit {
 /// swapped, no segment passes between two triangles that share an edge or a vertex. A triangle without an area is
 /// the segment or the point that it covers; so is a segment without a length.
 pub fn segment_hits_triangle(p0: &Point3<f64>, p1: &Point3<f64>, triangle: &[Point3<f64>; 3]) -> SegmentHit {
-    Sheared::new(p0, p1).hits(triangle)
+    Sheared::new(p0, p1).hits(triangle.each_ref())
 }
 
 impl Sheared {
     /// [`segment_hits_triangle`], of a segment that is held against many.
     #[inline]
-    pub(crate) fn hits(&self, triangle: &[Point3<f64>; 3]) -> SegmentHit {
-        match self.passage(triangle) {
+    pub(crate) fn hits(&self, corners: [&Point3<f64>; 3]) -> SegmentHit {
+        match self.passage(corners) {
             Passage::Outside => SegmentHit::Miss,
-            Passage::Inside => self.crossing(triangle, |_, _| Some(Feature::Face)),
-            Passage::Near => self.crossing(triangle, Self::feature),
+            Passage::Inside => self.crossing(&corners.map(|v| *v), |_, _| Some(Feature::Face)),
+            Passage::Near => self.crossing(&corners.map(|v| *v), Self::feature),
         }
     }
 
