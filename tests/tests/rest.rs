@@ -299,7 +299,7 @@ fn h29_a_ball_wider_than_its_corridor_goes_on_along_it_and_no_deeper_into_the_wa
             for k in 0..=100 {
                 let t = 0.02 * f64::from(k);
                 let off = run.at(t) - alone.at(t);
-                assert!(off.x == 0.0 && off.amax() <= 16.0 * U, "r = {radius}, {across} across, after {t} s: {off}");
+                assert!(off.amax() <= touch_distance(2.5, 2.0), "r = {radius}, {across} across, after {t} s: {off}");
             }
         }
     }
