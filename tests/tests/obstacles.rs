@@ -130,6 +130,7 @@ fn r28_a_ball_that_leaves_an_edge_along_a_curve_is_back_on_time() {
         let returns = at.returns(&step, &[leaving], &mut counters);
         let hit = at.earliest(&step, &[leaving], &returns, &mut counters).map(|hit| hit.f);
         let early = hit.map(|f| (back - f) * (1.0 + 2.0 * back + 3.0 * d * back.powi(2) + 4.0 * e * back.powi(3) - v));
+        assert!(counters.clearances > 1, "what is asked of the way off the edge is counted");
         assert!(early.is_some_and(|gap| (-1e-15..contact_doubt(8.0 + v)).contains(&gap)), "{hit:?} with {d} and {e}");
     }
 }

@@ -164,6 +164,7 @@ fn a_ball_leads_into_the_triangle_where_it_comes_to_the_height_of_its_radius() {
         // At a slant from x = -1 by 1 for 1: at height 2 it is over the triangle, at height 3 not yet; and the other way.
         assert!(leads(p(-1.0, 1.0, 4.0), p(3.0, 1.0, 0.0), 2.0) && !leads(p(-1.0, 1.0, 4.0), p(3.0, 1.0, 0.0), 3.5));
         assert!(leads(p(2.0, 1.0, 4.0), p(6.0, 1.0, 0.0), 3.5) && !leads(p(2.0, 1.0, 4.0), p(6.0, 1.0, 0.0), 2.0));
+        assert!(leads(p(-3.0, 1.0, 4.0), p(5.0, 1.0, 0.0), 2.0), "half of the way");
         // Not so far as that, where it ends; as far from the start, where it begins; and away, where it ends.
         assert!(leads(p(-1.0, 1.0, 4.0), p(1.0, 1.0, 3.0), 1.0) && !leads(p(1.0, 1.0, 4.0), p(-1.0, 1.0, 3.0), 1.0));
         assert!(leads(p(1.0, 1.0, 0.5), p(-3.0, 1.0, 0.25), 1.0) && !leads(p(-1.0, 1.0, 0.5), p(1.0, 1.0, 0.25), 1.0));
