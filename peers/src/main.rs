@@ -1,24 +1,23 @@
-//! Times the same work by Carom, rapier3d and parry3d, in one run on one machine, and prints a table in Markdown.
+//! Times the same work by Carom, rapier3d, parry3d and, where it is installed, Embree, in one run on one machine, and prints a table in Markdown.
 //!
 //! `carom-peers [BALLS]`: so many balls on the terrain for rapier, which takes a hundred times as long for each.
 //! `carom-peers conformance PACK OUT` writes what rapier makes of the conformance pack instead.
 
 mod conformance;
+mod embree;
 mod parry;
 mod rapier;
+mod segments;
 
 use carom_benches::cases::ball_and_triangle;
-use carom_benches::clock::{median, peak_memory, seconds};
-use carom_benches::random::Random;
+use carom_benches::clock::{median, peak_memory};
 use carom_benches::scenes::{self, Result};
-use carom_benches::terrain::{HALF, SQUARES, height, terrain};
+use carom_benches::terrain::{HALF, SQUARES, height};
 use carom_dynamics::counters::Counters;
 use carom_dynamics::plan::Plan;
 use carom_dynamics::simulate::simulate;
 use carom_geometry::contact::{MovingBall, first_contact};
-use carom_geometry::mesh::Mesh;
-use carom_geometry::sweep::Work;
-use nalgebra::{Point3, Vector3};
+use nalgebra::Vector3;
 use std::hint::black_box;
 
 /// Runs of which the median counts.
@@ -29,7 +28,7 @@ const BALLS: usize = 10_000;
 
 /// A row of the table: the work, its unit, and what it takes.
 struct Row {
-    work: &'static str,
+    work: String,
     unit: &'static str,
     carom: f64,
     peer: &'static str,
@@ -44,7 +43,9 @@ fn main() -> Result<()> {
         return conformance::run(pack.as_ref(), out.as_ref());
     }
     let rapier_balls = arguments.first().map_or(Ok(500), |n| n.parse())?;
-    let rows = [one_ball()?, terrain_balls(rapier_balls)?, room()?, segments()?, one_triangle(), prediction()?];
+    let mut rows = vec![one_ball()?, terrain_balls(rapier_balls)?, room()?];
+    rows.extend(segments::rows()?);
+    rows.extend([one_triangle(), prediction()?]);
     println!("| work | Carom | peer | ratio |\n|---|---|---|---|");
     for Row { work, unit, carom, peer, theirs } in rows {
         let figure = |x: f64| if x < 10.0 { format!("{x:.2}") } else { format!("{x:.0}") };
@@ -78,7 +79,7 @@ fn one_ball() -> Result<Row> {
     let time = median(RUNS, || (0..TIMES).for_each(|_| _ = black_box(simulate(&plan, ball, &mut ()))));
     let theirs = rapier::one_ball(DURATION, 1.0 / 60.0);
     Ok(Row {
-        work: "one ball on a plane, 3 s",
+        work: "one ball on a plane, 3 s".to_owned(),
         unit: "us per simulated second",
         carom: 1.0e6 * time / (TIMES as f64 * DURATION),
         peer: "rapier3d at 1/60 s",
@@ -103,7 +104,7 @@ fn terrain_balls(rapier_balls: usize) -> Result<Row> {
     eprintln!("terrain: {through} of {BALLS} balls through the surface");
     let theirs = rapier::balls_on_terrain(rapier_balls, DURATION, 1.0 / 240.0)?;
     Ok(Row {
-        work: "10 000 balls on 200 978 triangles, 2 s",
+        work: "10 000 balls on 200 978 triangles, 2 s".to_owned(),
         unit: "us per ball-second",
         carom: 1.0e6 * time / (rows * DURATION),
         peer: "rapier3d, ccd, internal edges fixed, at 1/240 s",
@@ -115,44 +116,12 @@ fn room() -> Result<Row> {
     let plan = Plan::new(&scenes::balls_in_room(BALLS, 10.0)?)?;
     let (time, counters) = run(&plan);
     let carom = 1.0e9 * time / counters.impacts as f64;
-    Ok(Row { work: "balls in a room of six elastic walls", unit: "ns per impact", carom, peer: "", theirs: None })
-}
-
-fn segments() -> Result<Row> {
-    let (vertices, faces) = terrain(SQUARES);
-    let theirs = parry::Obstacle::new(&vertices, &faces)?;
-    let mesh = Mesh::new(vertices, faces)?;
-    let mut random = Random::new(3);
-    let segments: Vec<(Point3<f64>, Vector3<f64>)> = (0..100_000)
-        .map(|_| {
-            let (x, y) = (random.within(1.0 - HALF, HALF - 1.0), random.within(1.0 - HALF, HALF - 1.0));
-            let along = random.vector(0.6);
-            (Point3::new(x, y, height(x, y) + 0.5), Vector3::new(along.x, along.y, -1.0))
-        })
-        .collect();
-    let ours = || {
-        let hits = |(from, along): &(Point3<f64>, Vector3<f64>)| {
-            mesh.first_pierced(from, &(from + along), &mut Work::default()).is_some()
-        };
-        segments.iter().filter(|s| hits(s)).count()
-    };
-    let others = || segments.iter().filter(|(from, along)| theirs.segment(from, along).is_some()).count();
-    eprintln!("segments: Carom meets {}, parry {} of {}", ours(), others(), segments.len());
-    // By turns, so that both have the same neighbours on the machine.
-    let (mut a, mut b) = (Vec::new(), Vec::new());
-    for _ in 0..RUNS {
-        a.push(seconds(|| _ = black_box(ours())));
-        b.push(seconds(|| _ = black_box(others())));
-    }
-    a.sort_by(f64::total_cmp);
-    b.sort_by(f64::total_cmp);
-    let each = |times: &[f64]| 1.0e9 * times[RUNS / 2] / segments.len() as f64;
     Ok(Row {
-        work: "short segments against 200 978 triangles, random order, certified",
-        unit: "ns",
-        carom: each(&a),
-        peer: "parry3d-f64, not certified",
-        theirs: Some(each(&b)),
+        work: "balls in a room of six elastic walls".to_owned(),
+        unit: "ns per impact",
+        carom,
+        peer: "",
+        theirs: None,
     })
 }
 
@@ -172,7 +141,7 @@ fn one_triangle() -> Row {
     ours.sort_by(f64::total_cmp);
     others.sort_by(f64::total_cmp);
     Row {
-        work: "a ball against a triangle, median of the cases with exact answers, certified",
+        work: "a ball against a triangle, median of the cases with exact answers, certified".to_owned(),
         unit: "ns",
         carom: ours[ours.len() / 2],
         peer: "parry3d-f64, straight ones only",
@@ -185,5 +154,5 @@ fn prediction() -> Result<Row> {
     let plan = Plan::new(&scenes::predicted(TIMES)?)?;
     let (time, _) = run(&plan);
     let carom = 1.0e6 * time / TIMES as f64;
-    Ok(Row { work: "one ball 8 s ahead on 7938 triangles", unit: "us", carom, peer: "", theirs: None })
+    Ok(Row { work: "one ball 8 s ahead on 7938 triangles".to_owned(), unit: "us", carom, peer: "", theirs: None })
 }
