@@ -48,24 +48,23 @@ fn leaving(step: &Step, contact: &Contact) -> Clearance {
 /// The f up to which the path cannot come back to the edge or vertex, bent as `bend`, that it leaves from distance `radius`
 /// with the slope `slope` of its clearance.
 ///
-/// For a parabola |w(f)|^2 - r^2, with w the part across the edge, is a quartic, solved like any clearance. A path of higher degree follows
-/// its parabola closely enough while its further terms take less than a quarter of what the distance gains.
+/// For a parabola |w(f)|^2 - r^2, with w the part across the edge, is a quartic, solved like any clearance. The further terms of a path bring it
+/// nearer by |t3| f^3 + |t4| f^4 at most, so that it is off while |w| is more than r and that: while |w|^2 - r^2 is more than
+/// 2 r (|t3| f^3 + |t4| f^4) + (|t3| + |t4|)^2 f^4, since f is 1 at most. On a path straight back that is no sooner than it must be at f = 1.
 fn leaves_until(step: &Step, bend: Bend, radius: f64, slope: f64) -> f64 {
     let zero = Vector3::zeros();
-    let term = |k: usize| step.path.terms().get(k).copied().unwrap_or(zero);
+    let term = |k: usize| bend.across(step.path.terms().get(k).unwrap_or(&zero));
     let away = bend.away_from(&step.path.start()).and_then(|away| away.try_normalize(0.0));
     let Some(w) = away.map(|n| n * radius) else { return 0.0 };
-    let (b, c) = (bend.across(&term(0)), bend.across(&term(1)));
+    let (b, c) = (term(0), term(1));
+    let (third, fourth) = (term(2).norm(), term(3).norm());
     // The ball touches: the term of order 0 is zero, and that of order 1 is known from the contact.
     let leaving = 2.0 * radius * slope;
     let gain = b.norm_squared() + 2.0 * w.dot(&c);
-    let squared = Clearance::new([0.0, leaving, gain, 2.0 * b.dot(&c), c.norm_squared()]);
-    let until = match squared.first_entry(0.0, step.to) {
-        Entry::Never => f64::INFINITY,
-        Entry::At { f, .. } => f,
-    };
-    let further = term(2).norm() + term(3).norm();
-    if further == 0.0 { until } else { until.min((gain / (8.0 * radius * further)).max(0.0)) }
+    let cubic = 2.0 * (b.dot(&c) - radius * third);
+    let quartic = c.norm_squared() - 2.0 * radius * fourth - (third + fourth) * (third + fourth);
+    let off = Clearance::new([0.0, leaving, gain, cubic, quartic]);
+    off.first_entry(0.0, step.to).f().unwrap_or(f64::INFINITY)
 }
 
 /// Where the step crosses a bound of the region of a place.
@@ -148,3 +147,6 @@ impl Obstacles<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -13,6 +13,7 @@ use crate::tolerance::{
 };
 use carom_geometry::bounds::amax;
 use carom_geometry::clearance::Entry;
+use nalgebra::Vector3;
 
 /// Which of the contacts of one instant close: a bit for each.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -107,6 +108,7 @@ impl<O: Observer> Walk<'_, O> {
             self.correct(contact, tolerance);
         }
         self.contacts = contacts;
+        self.bound = Some(Bound { time: 0.0, position: tolerance });
         self.settle(None);
     }
 
@@ -188,9 +190,14 @@ impl<O: Observer> Walk<'_, O> {
             impact_time_bound(doubt, -c.rate, bend)
         };
         let closing = contacts.iter().filter(|c| c.rate < 0.0 && c.surface == hit.surface);
+        Some(self.bound_of(&velocity, closing.map(time).reduce(f64::max)?, doubt))
+    }
+
+    /// What happens now while the ball moves with `velocity`, if its time is known to `seconds` and its place, at any time, to `doubt` (m).
+    pub(super) fn bound_of(&self, velocity: &Vector3<f64>, seconds: f64, doubt: f64) -> Bound {
         let now = self.clock.now();
-        let time = closing.map(time).reduce(f64::max)?.min(now) + clock_bound(now);
-        Some(Bound { time, position: doubt + velocity.norm() * time })
+        let time = seconds.min(now) + clock_bound(now);
+        Bound { time, position: doubt + velocity.norm() * time }
     }
 
     /// Whether contacts that lose energy have answered each other without time passing for so long that there is no end to it; then
