@@ -4,6 +4,7 @@ mod build;
 mod frame;
 
 use frame::{Frame, LocalSegment};
+use multiversion::multiversion;
 use nalgebra::Point3;
 
 use crate::bounds::Aabb;
@@ -29,8 +30,8 @@ pub struct FatSegment {
 #[derive(Debug, Clone)]
 #[repr(align(32))]
 struct Node {
-    /// Least x, y, z, then largest x, y, z of each child; +infinity and -infinity where there is none.
-    planes: [[f32; WIDTH]; 6],
+    /// For each axis the least and the largest coordinate of each child; +infinity and -infinity where there is none.
+    planes: [[[f32; WIDTH]; 2]; 3],
     child: [Child; WIDTH],
 }
 
@@ -39,10 +40,18 @@ impl Node {
     #[inline]
     fn meets(&self, lo: &[f32; 3], hi: &[f32; 3]) -> u32 {
         let meets = |i: usize| {
-            let (least, largest) = (f32x8::new(self.planes[i]), f32x8::new(self.planes[i + 3]));
+            let [least, largest] = self.planes[i].map(f32x8::new);
             least.simd_le(f32x8::splat(hi[i])) & largest.simd_ge(f32x8::splat(lo[i]))
         };
         (meets(0) & meets(1) & meets(2)).to_bitmask()
+    }
+
+    /// The first child of those that are `met`, no longer among them.
+    #[inline(always)]
+    fn take(&self, met: &mut u32, entries: &[f32; WIDTH]) -> Pending {
+        let j = met.trailing_zeros() as usize % WIDTH;
+        *met &= *met - 1;
+        Pending::new(entries[j], self.child[j])
     }
 }
 
@@ -73,11 +82,27 @@ impl Child {
     }
 }
 
-/// What is still to be looked at: a child, and a lower bound of the s at which the segment enters it.
-#[derive(Debug, Clone, Copy, Default)]
-struct Pending {
-    child: Child,
-    entry: f32,
+/// What is still to be looked at: a lower bound of the s at which the segment enters it, in the upper half, and a child. Not below 0, such a number
+/// is in the order of its bits, so that the least of these is the nearest.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
+struct Pending(u64);
+
+impl Pending {
+    #[inline(always)]
+    fn new(entry: f32, child: Child) -> Self {
+        // Adding 0 turns -0 into 0.
+        Self((u64::from((entry + 0.0).to_bits()) << 32) | u64::from(child.0))
+    }
+
+    #[inline(always)]
+    fn entry(self) -> f32 {
+        f32::from_bits((self.0 >> 32) as u32)
+    }
+
+    #[inline(always)]
+    fn child(self) -> Child {
+        Child(self.0 as u32)
+    }
 }
 
 /// A tree over boxes: eight children to a node, leaves of up to four items.
@@ -141,7 +166,7 @@ impl Bvh {
     /// coordinate that is not finite is shown everything.
     pub fn visit(&self, segment: &FatSegment, mut hit: impl FnMut(u32) -> f64) -> u64 {
         let Some(local) = self.frame.segment(segment, &self.bounds) else { return 0 };
-        self.with_stack(|stack| self.walk(&local, stack, &mut hit))
+        self.with_stack(|stack| walk(&self.nodes, &self.items, &local, stack, &mut hit))
     }
 
     /// Shows `hit` every item whose box meets `query`, and some near misses; returns the number of nodes looked at.
@@ -154,7 +179,7 @@ impl Bvh {
             let (mut pending, mut visited) = (1, 0);
             while pending > 0 {
                 pending -= 1;
-                let child = stack[pending].child;
+                let child = stack[pending].child();
                 if let Some(items) = child.items() {
                     self.items[items].iter().for_each(|&item| hit(item));
                     continue;
@@ -163,9 +188,7 @@ impl Bvh {
                 visited += 1;
                 let mut met = node.meets(&lo, &hi);
                 while met != 0 {
-                    let j = met.trailing_zeros() as usize;
-                    met &= met - 1;
-                    stack[pending] = Pending { child: node.child[j], entry: 0.0 };
+                    stack[pending] = node.take(&mut met, &[0.0; WIDTH]);
                     pending += 1;
                 }
             }
@@ -181,39 +204,70 @@ impl Bvh {
             walk(&mut vec![Pending::default(); self.stack])
         }
     }
+}
 
-    fn walk(&self, segment: &LocalSegment, stack: &mut [Pending], hit: &mut impl FnMut(u32) -> f64) -> u64 {
-        let (mut pending, mut visited, mut limit) = (1, 0, 1.0_f32);
-        while pending > 0 {
-            pending -= 1;
-            let Pending { child, entry } = stack[pending];
-            if entry > limit {
-                continue;
+/// [`walk_plainly`], compiled once more for processors with wider registers: by the same operations in the same order, which round alike.
+#[multiversion(targets("x86_64+avx2"))]
+fn walk(
+    nodes: &[Node],
+    items: &[u32],
+    segment: &LocalSegment,
+    stack: &mut [Pending],
+    hit: &mut impl FnMut(u32) -> f64,
+) -> u64 {
+    walk_plainly(nodes, items, segment, stack, hit)
+}
+
+/// Goes through the nodes that the segment enters, and shows `hit` the items that are in them; returns how many nodes there were.
+#[inline(always)] // so that it is compiled with `walk`
+fn walk_plainly(
+    nodes: &[Node],
+    items: &[u32],
+    segment: &LocalSegment,
+    stack: &mut [Pending],
+    hit: &mut impl FnMut(u32) -> f64,
+) -> u64 {
+    let (mut pending, mut visited, mut limit) = (0, 0, 1.0_f32);
+    let mut child = Child::default();
+    loop {
+        if let Some(places) = child.items() {
+            for &item in &items[places] {
+                let last = segment.local_limit(hit(item));
+                limit = if last < limit { last } else { limit };
             }
-            if let Some(items) = child.items() {
-                for &item in &self.items[items] {
-                    limit = limit.min(segment.local_limit(hit(item)));
-                }
-                continue;
-            }
-            let Some(node) = self.nodes.get(child.0 as usize) else { continue };
+        } else if let Some(node) = nodes.get(child.0 as usize) {
             visited += 1;
             let (entries, mut met) = segment.entries(&node.planes, limit);
-            let first = pending;
-            while met != 0 {
-                let j = met.trailing_zeros() as usize;
-                met &= met - 1;
-                // Nearest last, where it is popped first.
-                let mut place = pending;
-                while place > first && stack[place - 1].entry < entries[j] {
-                    stack[place] = stack[place - 1];
-                    place -= 1;
+            if met != 0 {
+                let first = pending;
+                let mut nearest = node.take(&mut met, &entries);
+                while met != 0 {
+                    let next = node.take(&mut met, &entries);
+                    let farther = if next > nearest { next } else { nearest };
+                    nearest = if next > nearest { nearest } else { next };
+                    // The nearer the later, so that it is popped the sooner.
+                    let mut place = pending;
+                    while place > first && stack[place - 1] < farther {
+                        stack[place] = stack[place - 1];
+                        place -= 1;
+                    }
+                    stack[place] = farther;
+                    pending += 1;
                 }
-                stack[place] = Pending { child: node.child[j], entry: entries[j] };
-                pending += 1;
+                child = nearest.child();
+                continue;
             }
         }
-        visited
+        loop {
+            if pending == 0 {
+                return visited;
+            }
+            pending -= 1;
+            if stack[pending].entry() <= limit {
+                break;
+            }
+        }
+        child = stack[pending].child();
     }
 }
 

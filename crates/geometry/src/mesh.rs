@@ -224,6 +224,13 @@ impl Mesh {
         corners(&self.vertices, &self.faces[face as usize])
     }
 
+    /// The corners of a face, where they are.
+    #[inline]
+    pub(crate) fn corners(&self, face: u32) -> [&Point3<f64>; 3] {
+        let [a, b, c] = self.faces[face as usize];
+        [&self.vertices[a as usize], &self.vertices[b as usize], &self.vertices[c as usize]]
+    }
+
     /// The unit normal of a face, from whose tip its corners go round counter-clockwise; `None` if its area is exactly
     /// zero. Of a planar mesh, the declared normal, always.
     pub fn normal(&self, face: u32) -> Option<UnitVector3<f64>> {

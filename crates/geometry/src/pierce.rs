@@ -4,7 +4,7 @@ use crate::bvh::FatSegment;
 use crate::closest::Feature;
 use crate::mesh::Mesh;
 use crate::rounding::SEGMENT_FRACTION_BOUND;
-use crate::segment::{SegmentHit, segment_hits_triangle};
+use crate::segment::{SegmentHit, Sheared};
 use crate::sweep::Work;
 use nalgebra::Point3;
 
@@ -24,10 +24,11 @@ impl Mesh {
     /// passes between faces that share an edge or a vertex. The points are finite.
     pub fn first_pierced(&self, from: &Point3<f64>, to: &Point3<f64>, work: &mut Work) -> Option<Pierced> {
         let mut best: Option<Pierced> = None;
+        let sheared = Sheared::new(from, to);
         let segment = FatSegment { from: *from, to: *to, radius: 0.0 };
         work.nodes += self.bvh().visit(&segment, |face| {
             work.triangles += 1;
-            if let SegmentHit::Hit { f, feature, .. } = segment_hits_triangle(from, to, &self.triangle(face))
+            if let SegmentHit::Hit { f, feature, .. } = sheared.hits(self.corners(face))
                 && best.is_none_or(|found| (f, face) < (found.f, found.face))
             {
                 best = Some(Pierced { f, face, feature });

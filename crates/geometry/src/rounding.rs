@@ -30,6 +30,20 @@ pub fn orient3d_bound(permanent: f64, column: f64) -> f64 {
     (7.0 + 56.0 * UNIT_ROUNDOFF) * UNIT_ROUNDOFF * permanent + f64::MIN_POSITIVE * (column + 2.0)
 }
 
+/// Bound on the error of x1 y2 - x2 y1 of two points that were seen from the start of a segment and sheared along its longest axis:
+/// no |x| or |y| is larger than `across` as computed, and no distance along the axis than `along`.
+///
+/// A sheared coordinate is r - (d / e) z: u |r| for a difference of coordinates, 5 u |z| for the quotient of two, its product and the rounding of z, and u
+/// `across` for the last subtraction, where |r| <= `across` + |z|: together less than 8 u m, m = `across` + `along`. Four such
+/// errors times `across`, two of their squares, and the roundings of the products and the difference, 6 u `across`^2, are
+/// below 40 u `across` m + 128 u^2 m^2; what is over covers the rounding of the bound. Products that underflow are
+/// off by a spacing each, and so are coordinates: the smallest normal number is given. No product is larger than `across` m, so that
+/// the bound is infinite where one of them is.
+pub(crate) fn sheared_bound(across: f64, along: f64) -> f64 {
+    let m = across + along;
+    64.0 * UNIT_ROUNDOFF * (m * (across + 4.0 * UNIT_ROUNDOFF * m)) + f64::MIN_POSITIVE * (across + 2.0)
+}
+
 /// Bound on the error of n.(x - p) as computed from f64 n, x and p: `magnitude` = fl(|n1 d1| + |n2 d2| + |n3 d3|), d = fl(x - p).
 ///
 /// A term passes a subtraction, a product and two sums: gamma(4) (|n1 d1| + ...) in exact arithmetic; 4 u + 64 u^2 also covers the
@@ -240,6 +254,11 @@ mod tests {
         }
         assert_eq!((orient2d_bound(0.0), signed_distance_bound(0.0)), (f64::from_bits(2), f64::from_bits(2)));
         assert_eq!(orient3d_bound(0.0, 3.0), 5.0 * f64::MIN_POSITIVE);
+        assert!(is_units(sheared_bound(2.0, 6.0), 1024.0, 1.0) && sheared_bound(0.0, 1.0) > scale(1.0, -99));
+        assert_eq!(
+            (sheared_bound(0.0, 0.0), sheared_bound(scale(1.0, 520), 0.0)),
+            (2.0 * f64::MIN_POSITIVE, f64::INFINITY)
+        );
         assert_eq!(vector_area_bound(0.0, 3), 3.0 * f64::MIN_POSITIVE);
         assert_eq!(NORMAL_BOUND, VECTOR_AREA_BOUND + 8.0 * UNIT_ROUNDOFF);
     }

@@ -1,10 +1,14 @@
 //! A segment against a triangle (R40 to R46), decided exactly on the original points and never on a rounded hit point.
 
+mod sheared;
+
 use crate::closest::Feature;
 use crate::exact::{self, Exact, ExactVector};
 use crate::predicates::{Sign, orient3d, orient3d_exact, orient3d_values};
 use crate::rounding::{SEGMENT_FRACTION_BOUND, UNIT_ROUNDOFF};
 use nalgebra::Point3;
+use sheared::Passage;
+pub(crate) use sheared::Sheared;
 
 /// Whether a segment meets a triangle, and where first.
 ///
@@ -42,33 +46,53 @@ pub enum SegmentHit {
 /// swapped, no segment passes between two triangles that share an edge or a vertex. A triangle without an area is
 /// the segment or the point that it covers; so is a segment without a length.
 pub fn segment_hits_triangle(p0: &Point3<f64>, p1: &Point3<f64>, triangle: &[Point3<f64>; 3]) -> SegmentHit {
-    let [a, b, c] = triangle;
-    let heights = orient3d_values(triangle, [p0, p1]);
-    let sign = |(value, bound): (f64, f64), p: &Point3<f64>| {
-        if value.abs() > bound { Sign::of(value) } else { orient3d(a, b, c, p) }
-    };
-    let (s0, s1) = (sign(heights[0], p0), sign(heights[1], p1));
-    match (s0, s1) {
-        (Sign::Zero, Sign::Zero) => return coplanar(p0, p1, triangle),
-        _ if s0 == s1 => return SegmentHit::Miss,
-        _ => {}
+    Sheared::new(p0, p1).hits(triangle.each_ref())
+}
+
+impl Sheared {
+    /// [`segment_hits_triangle`], of a segment that is held against many.
+    #[inline]
+    pub(crate) fn hits(&self, corners: [&Point3<f64>; 3]) -> SegmentHit {
+        match self.passage(corners) {
+            Passage::Outside => SegmentHit::Miss,
+            Passage::Inside => self.crossing(&corners.map(|v| *v), |_, _| Some(Feature::Face)),
+            Passage::Near => self.crossing(&corners.map(|v| *v), Self::feature),
+        }
     }
-    // The line meets the plane in one point, inside if it passes all edges on one side.
-    let side = |q: &Point3<f64>, r: &Point3<f64>| {
-        // The sign of orient3d(p0, p1, q, r), from p0: what the three have in common is computed once.
-        let [(value, bound)] = orient3d_values(&[*p0, *q, *r], [p1]);
-        if value.abs() > bound { Sign::of(value) } else { orient3d(p0, p1, q, r) }
-    };
-    let sides = [side(a, b), side(b, c), side(c, a)];
-    if sides.contains(&Sign::Positive) && sides.contains(&Sign::Negative) {
-        return SegmentHit::Miss;
+
+    /// Where the segment crosses the plane of the triangle, if `feature` says of what there it does.
+    fn crossing(
+        &self,
+        triangle: &[Point3<f64>; 3],
+        feature: impl FnOnce(&Self, &[Point3<f64>; 3]) -> Option<Feature>,
+    ) -> SegmentHit {
+        let ([a, b, c], [p0, p1]) = (triangle, self.ends());
+        let heights = orient3d_values(triangle, [p0, p1]);
+        let sign = |(value, bound): (f64, f64), p: &Point3<f64>| {
+            if value.abs() > bound { Sign::of(value) } else { orient3d(a, b, c, p) }
+        };
+        let (s0, s1) = (sign(heights[0], p0), sign(heights[1], p1));
+        match (s0, s1) {
+            (Sign::Zero, Sign::Zero) => return coplanar(p0, p1, triangle),
+            _ if s0 == s1 => return SegmentHit::Miss,
+            _ => {}
+        }
+        let Some(feature) = feature(self, triangle) else { return SegmentHit::Miss };
+        let f = match (s0, s1) {
+            (Sign::Zero, _) => 0.0,
+            (_, Sign::Zero) => 1.0,
+            _ => fraction(p0, p1, triangle, heights),
+        };
+        SegmentHit::Hit { f, feature, coplanar: false }
     }
-    let f = match (s0, s1) {
-        (Sign::Zero, _) => 0.0,
-        (_, Sign::Zero) => 1.0,
-        _ => fraction(p0, p1, triangle, heights),
-    };
-    SegmentHit::Hit { f, feature: feature(sides.map(|s| s == Sign::Zero)), coplanar: false }
+
+    /// What of the triangle the line meets that is not in its plane: it meets that in one point, inside if it passes all edges on one side.
+    fn feature(&self, [a, b, c]: &[Point3<f64>; 3]) -> Option<Feature> {
+        let [p0, p1] = self.ends();
+        let sides = [orient3d(p0, p1, a, b), orient3d(p0, p1, b, c), orient3d(p0, p1, c, a)];
+        let passes = sides.contains(&Sign::Positive) && sides.contains(&Sign::Negative);
+        (!passes).then(|| feature(sides.map(|s| s == Sign::Zero)))
+    }
 }
 
 /// The feature on which the edges marked `on` (edge i from vertex i to i + 1) meet.

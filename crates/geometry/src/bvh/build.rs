@@ -155,7 +155,7 @@ impl Part {
         let (groups, count) = groups(items, all, level);
         let number = self.nodes.len();
         self.nodes.push(Node {
-            planes: std::array::from_fn(|i| [if i < 3 { f32::INFINITY } else { f32::NEG_INFINITY }; WIDTH]),
+            planes: [[[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]]; 3],
             child: [Child::default(); WIDTH],
         });
         let mut below = if all.len() > ON_ONE_CORE {
@@ -175,9 +175,8 @@ impl Part {
             let node = &mut self.nodes[number];
             node.child[j] = child;
             let (lo, hi) = (group.bounds.lo.to_array(), group.bounds.hi.to_array());
-            for i in 0..3 {
-                node.planes[i][j] = lo[i];
-                node.planes[i + 3][j] = hi[i];
+            for (i, [least, largest]) in node.planes.iter_mut().enumerate() {
+                (least[j], largest[j]) = (lo[i], hi[i]);
             }
         }
         number as u32

@@ -1,7 +1,7 @@
 //! The tree's own coordinates, and queries in them with room for every rounding.
 
 use super::{FatSegment, WIDTH};
-use crate::bounds::{Aabb, largest, least};
+use crate::bounds::{Aabb, largest};
 use crate::rounding::{UNIT_ROUNDOFF, gamma, segment_bound, segment_bound_f32};
 use wide::f32x8;
 
@@ -67,30 +67,40 @@ impl Frame {
     /// The query, or `None` if it is certain to miss everything.
     pub(super) fn segment(&self, query: &FatSegment, bounds: &Aabb) -> Option<LocalSegment> {
         let FatSegment { from, to, radius } = query;
-        let all = LocalSegment::new(0.0, 1.0, [0.0; 3], [0.0; 3], NEAR);
-        if !(from.coords.iter().chain(&to.coords).all(|c| c.is_finite()) && radius.is_finite()) {
-            return (!bounds.is_empty()).then_some(all);
+        let all = || LocalSegment::new(0.0, 1.0, [0.0; 3], [0.0; 3], NEAR);
+        // Zero, unless one of them is not finite.
+        let zero = (0.0 * from.x + 0.0 * from.y + 0.0 * from.z) + (0.0 * to.x + 0.0 * to.y + 0.0 * to.z) + 0.0 * radius;
+        if zero != 0.0 || zero.is_nan() {
+            return (!bounds.is_empty()).then(all);
         }
         let (a, b) = (self.local(from), self.local(to));
-        let reach = a.iter().chain(&b).fold(0.0, |m: f64, c| largest(m, c.abs()));
-        let radius = radius.max(0.0) * self.scale + segment_bound(reach);
+        let reach = largest_of(&a, &b);
+        let radius = largest(*radius, 0.0) * self.scale + segment_bound(reach);
         // Also true where `reach` or the radius is no longer finite.
         if !(radius <= HOPELESS && reach <= HOPELESS / UNIT_ROUNDOFF) {
-            return Some(all);
+            return Some(all());
         }
         // Boxes of the tree lie within NEAR at every scale.
-        let off = |i: usize| least(a[i], b[i]) - radius > NEAR || largest(a[i], b[i]) + radius < -NEAR;
-        if off(0) || off(1) || off(2) {
+        let limit = NEAR + radius;
+        let off = |i: usize| (a[i] > limit) & (b[i] > limit) | (a[i] < -limit) & (b[i] < -limit);
+        if off(0) | off(1) | off(2) {
             return None;
         }
-        let d = [0, 1, 2].map(|i| b[i] - a[i]);
         if reach <= NEAR {
             return Some(LocalSegment::new(0.0, 1.0, a, b, radius));
         }
+        let d = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
         let (s0, s1) = clip(&a, &d, (1.0 + radius) * (1.0 + gamma(2)))?;
         let at = |s: f64| [0, 1, 2].map(|i| a[i] + s * d[i]);
         Some(LocalSegment::new(s0, s1, at(s0), at(s1), radius))
     }
+}
+
+/// The largest |coordinate| of two points.
+#[inline(always)]
+fn largest_of(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    let of = |i: usize| largest(a[i].abs(), b[i].abs());
+    largest(largest(of(0), of(1)), of(2))
 }
 
 /// The power of two that brings `half` into [1/2, 1), or as near as f64 has one; 0 for 0.
@@ -124,29 +134,32 @@ fn clip(a: &[f64; 3], d: &[f64; 3], bound: f64) -> Option<(f64, f64)> {
 
 impl LocalSegment {
     /// From `a` at s = `start` to `b` at s = `end`.
+    #[inline]
     fn new(start: f64, end: f64, a: [f64; 3], b: [f64; 3], radius: f64) -> Self {
-        let reach = a.iter().chain(&b).fold(0.0, |m: f64, c| largest(m, c.abs()));
-        let radius = round_up(radius + segment_bound_f32(reach, radius));
-        let (a, b) = (a.map(|c| c as f32), b.map(|c| c as f32));
-        let step = [0, 1, 2].map(|i| b[i] - a[i]);
-        let forward = step.map(|c| c >= 0.0);
-        Self {
-            start,
-            end,
-            forward,
-            near_from: [0, 1, 2].map(|i| if forward[i] { a[i] + radius } else { a[i] - radius }),
-            far_from: [0, 1, 2].map(|i| if forward[i] { a[i] - radius } else { a[i] + radius }),
-            inverse: step.map(|c| (if c >= 0.0 { 1.0 } else { -1.0 }) / c.abs().max(LEAST_STEP)),
+        let radius = round_up(radius + segment_bound_f32(largest_of(&a, &b), radius));
+        let mut local =
+            Self { start, end, forward: [true; 3], near_from: [0.0; 3], far_from: [0.0; 3], inverse: [0.0; 3] };
+        for i in 0..3 {
+            let (from, to) = (a[i] as f32, b[i] as f32);
+            let step = to - from;
+            let forward = step >= 0.0;
+            let (direction, size) = if forward { (1.0, step) } else { (-1.0, -step) };
+            let outwards = direction * radius;
+            local.forward[i] = forward;
+            local.near_from[i] = from + outwards;
+            local.far_from[i] = from - outwards;
+            local.inverse[i] = direction / if size > LEAST_STEP { size } else { LEAST_STEP };
         }
+        local
     }
 
     /// For each child a lower bound of where it is entered, in [0, 1], and a bit for each that is met up to `limit`.
-    #[inline]
-    pub(super) fn entries(&self, planes: &[[f32; WIDTH]; 6], limit: f32) -> ([f32; WIDTH], u32) {
+    #[inline(always)] // as a function of its own it would have the narrow registers
+    pub(super) fn entries(&self, planes: &[[[f32; WIDTH]; 2]; 3], limit: f32) -> ([f32; WIDTH], u32) {
         let (mut entry, mut exit) = (f32x8::splat(0.0), f32x8::splat(limit));
-        for i in 0..3 {
-            let (near, far) = if self.forward[i] { (i, i + 3) } else { (i + 3, i) };
-            let (near, far) = (f32x8::new(planes[near]), f32x8::new(planes[far]));
+        for (i, sides) in planes.iter().enumerate() {
+            let forward = usize::from(self.forward[i]);
+            let (near, far) = (f32x8::new(sides[1 - forward]), f32x8::new(sides[forward]));
             let inverse = f32x8::splat(self.inverse[i]);
             // There are no NaN, which `max` and `min` would look for.
             entry = entry.fast_max((near - f32x8::splat(self.near_from[i])) * inverse);

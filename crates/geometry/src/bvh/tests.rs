@@ -105,6 +105,27 @@ proptest! {
         prop_assert_eq!(run(1.0), run(2.0_f64.powi(k)));
     }
 
+    /// The same items in the same order, by whichever registers the processor has.
+    #[test]
+    fn wider_registers_change_nothing(boxes in boxes(), a in lattice(), b in lattice(), r in 0..9i32, until in 0.0..1.0f64) {
+        let tree = Bvh::build(&boxes);
+        let Some(local) = tree.frame.segment(&FatSegment { from: a, to: b, radius: f64::from(r) }, &tree.bounds) else { return Ok(()) };
+        let run = |plainly: bool| {
+            let (mut stack, mut met) = (vec![Pending::default(); tree.stack], Vec::new());
+            let mut hit = |item| {
+                met.push(item);
+                until + 1.0 / met.len() as f64
+            };
+            let visited = if plainly {
+                walk_plainly(&tree.nodes, &tree.items, &local, &mut stack, &mut hit)
+            } else {
+                walk(&tree.nodes, &tree.items, &local, &mut stack, &mut hit)
+            };
+            (met, visited)
+        };
+        prop_assert_eq!(run(true), run(false));
+    }
+
     #[test]
     fn a_box_finds_all_that_it_meets(boxes in boxes(), a in lattice(), b in lattice(), scale in -300..=300i32) {
         let unit = 2.0_f64.powi(scale);

@@ -28,17 +28,9 @@ fn is_off_face(x: [f64; 3], terms: &[[f64; 3]], span: [f64; 2], reach: f64) -> b
     there
 }
 
-fn is_off_edges(x: [f64; 3], terms: &[[f64; 3]], span: [f64; 2], reach: f64) -> bool {
+fn is_off_nearest(x: [f64; 3], terms: &[[f64; 3]], span: [f64; 2], reach: f64) -> bool {
     let (path, corners) = seen(x, terms);
-    let stretch = Stretch::new(&path, span[0], span[1], reach);
-    let [there, back] = normals().map(|n| stretch.is_off_edges(&corners, &n));
-    assert_eq!(there, back, "the side a normal is on is of no matter");
-    // With whichever corner it begins.
-    let [a, b, c] = corners;
-    for turned in [[b, c, a], [c, a, b], [a, c, b]] {
-        assert_eq!(stretch.is_off_edges(&turned, &Vector3::z()), there);
-    }
-    there
+    Stretch::new(&path, span[0], span[1], reach).is_off_nearest(&corners)
 }
 
 #[test]
@@ -83,39 +75,74 @@ fn the_plane_of_the_face_rules_out_what_stays_farther_than_the_reach() {
 }
 
 #[test]
-fn the_planes_through_the_edges_rule_out_what_stays_beside_them() {
+fn the_plane_that_faces_the_path_rules_out_what_stays_farther_than_the_reach() {
     let half = 0.5f64.sqrt();
-    // Out of each edge: a point of it, and the direction.
-    for (p, out) in [([1.0, 0.0], [0.0, -1.0]), ([0.0, 1.0], [-1.0, 0.0]), ([2.0, 2.0], [half, half])] {
-        let along = [-out[1], out[0]];
-        let at = |d: f64, s: f64, z: f64| [p[0] + d * out[0] + s * along[0], p[1] + d * out[1] + s * along[1], z];
-        let term = |d: f64, s: f64, z: f64| [d * out[0] + s * along[0], d * out[1] + s * along[1], z];
+    // A point of the triangle, and a unit vector that leads away from it: off the face, an edge or a vertex, in its plane and out of it.
+    for (p, out) in [
+        ([1.0, 1.0], [0.0, 0.0, 1.0]),
+        ([1.0, 1.0], [0.0, 0.0, -1.0]),
+        ([1.0, 0.0], [0.0, -1.0, 0.0]),
+        ([1.0, 0.0], [0.0, -0.6, 0.8]),
+        ([0.0, 3.0], [-0.6, 0.0, -0.8]),
+        ([2.0, 2.0], [half, half, 0.0]),
+        ([0.0, 0.0], [-0.6, -0.8, 0.0]),
+        ([4.0, 0.0], [0.8, 0.0, 0.6]),
+        ([0.0, 4.0], [-0.6, 0.8, 0.0]),
+    ] {
+        let along = |d: f64| out.map(|c| d * c);
+        let at = |d: f64| [p[0] + d * out[0], p[1] + d * out[1], d * out[2]];
         for (terms, span, nearest) in [
-            (vec![term(0.0, 0.5, -4.0)], [0.0, 1.0], 2.0),
-            (vec![term(-1.0, 0.5, -4.0)], [0.0, 1.0], 1.0),
-            (vec![term(-1.0, 0.5, -4.0)], [0.0, 0.5], 1.5),
-            (vec![term(1.0, 0.0, -4.0)], [0.0, 1.0], 2.0),
-            // 2 - 4 f + 4 f^2, and its other way.
-            (vec![term(-4.0, 0.5, -4.0), term(4.0, 0.0, 0.0)], [0.0, 1.0], 1.0),
-            (vec![term(4.0, 0.5, -4.0), term(-4.0, 0.0, 0.0)], [0.0, 1.0], 2.0),
+            (vec![-1.0], [0.0, 1.0], 2.0),
+            (vec![-1.0], [0.0, 0.5], 2.5),
+            (vec![1.0], [0.5, 1.0], 3.5),
+            // 3 - 4 f + 4 f^2 is 2 in the middle, and so is its chord over [1/4, 3/4], at 9/4, less its bend; 3 + 4 f - 4 f^2 is 3 at the ends.
+            (vec![-4.0, 4.0], [0.0, 1.0], 2.0),
+            (vec![-4.0, 4.0], [0.25, 0.75], 2.0),
+            (vec![4.0, -4.0], [0.0, 1.0], 3.0),
         ] {
-            let off = |reach: f64| is_off_edges(at(2.0, 0.0, 2.0), &terms, span, reach);
-            assert!(off(nearest * LESS) && !off(nearest * MORE), "{p:?} {terms:?} over {span:?}");
+            let terms: Vec<[f64; 3]> = terms.into_iter().map(along).collect();
+            let off = |reach: f64| is_off_nearest(at(3.0), &terms, span, reach);
+            assert!(off(nearest * LESS) && !off(nearest * MORE), "{p:?} {out:?} {terms:?} over {span:?}");
         }
-        let cubic = [term(-0.5, 0.0, -4.0), term(0.125, 0.0, 0.0), term(0.0625, 0.0, 0.0)];
-        let nearest = 2.0 - 0.3125 - seen(at(2.0, 0.0, 2.0), &cubic).0.chord(0.0, 1.0).sagitta;
-        let off = |reach: f64| is_off_edges(at(2.0, 0.0, 2.0), &cubic, [0.0, 1.0], reach);
-        assert!(nearest > 1.0 && off(nearest * LESS) && !off(nearest * MORE), "{p:?}");
-        // Within, or through the plane of the edge either way, however small the reach; or so bent that it may be.
-        for terms in [[term(0.0, 0.0, -4.0)], [term(2.0, 0.0, -4.0)]] {
-            assert!(!is_off_edges(at(-1.0, 0.0, 2.0), &terms, [0.0, 1.0], 0.0));
-        }
-        assert!(!is_off_edges(at(1.0, 0.0, 2.0), &[term(-2.0, 0.0, -4.0)], [0.0, 1.0], 0.0));
-        let (there, back) = (term(-8.0, 0.0, -4.0), term(8.0, 0.0, 0.0));
-        assert!(!is_off_edges(at(1.0, 0.0, 2.0), &[there, back], [0.0, 1.0], 0.5));
+        let cubic = [along(-0.5), along(0.125), along(0.0625)];
+        let nearest = 3.0 - 0.3125 - seen(at(3.0), &cubic).0.chord(0.0, 1.0).sagitta;
+        let off = |reach: f64| is_off_nearest(at(3.0), &cubic, [0.0, 1.0], reach);
+        assert!(nearest > 2.0 && off(nearest * LESS) && !off(nearest * MORE), "{p:?} {out:?}");
     }
-    // To the very length of an edge that has a whole one, a contact at the reach is not ruled out.
-    assert!(!is_off_edges([1.0, -2.0, 2.0], &[[0.0, 0.0, -4.0]], [0.0, 1.0], 2.0));
+    // What passes beside an edge, slanting and bent, is measured where it passes the middle.
+    assert!(is_off_nearest([-2.0, -2.0, 0.0], &[[6.0, 0.0, 0.0]], [0.0, 1.0], 2.0 * LESS));
+    assert!(is_off_nearest([-2.0, -2.0, 1.0], &[[6.0, 0.0, -1.0]], [0.0, 1.0], 1.9));
+    // To the very length of a plane's distance that has a whole one, a contact at the reach is not ruled out.
+    assert!(!is_off_nearest([1.0, 1.0, 3.0], &[[0.0, 0.0, -1.0]], [0.0, 1.0], 2.0));
+    // A triangle without an area is the segment or the point that it is.
+    let path = Path::line(Point3::new(0.0, 0.0, 3.0), -Vector3::z());
+    for corners in [[0.0, 1.0, 2.0], [0.0, 0.0, 0.0], [1.0, 0.0, 1.0]].map(|x| x.map(|x| Vector3::new(x, 0.0, -3.0))) {
+        assert!(!Stretch::new(&path, 0.0, 1.0, 2.5).is_off_nearest(&corners));
+    }
+}
+
+#[test]
+fn no_stretch_is_ruled_out_that_comes_nearer_than_the_reach() {
+    let few = [-3.0, -1.0, 0.5, 2.0, 5.0];
+    let (mut ruled_out, mut kept) = (0, 0);
+    for k in 0..15_625 {
+        let pick = |i: u32| few[k / 5usize.pow(i) % 5];
+        let (x, first) = ([pick(0), pick(1), pick(2)], [pick(3), pick(4), pick(5)]);
+        for terms in
+            [vec![first], vec![first, [pick(2), pick(0), -2.0]], vec![first, [0.5, pick(5), 1.0], [pick(1), 0.25, 1.0]]]
+        {
+            let (path, _) = seen(x, &terms);
+            let triangle = CORNERS.map(Point3::from);
+            let distance =
+                |i: u32| crate::closest::closest_point(&triangle, &path.at(f64::from(i) / 32.0)).offset.norm();
+            let nearest = (0..=32).map(distance).fold(f64::INFINITY, f64::min);
+            assert!(!is_off_nearest(x, &terms, [0.0, 1.0], nearest * MORE), "{x:?} {terms:?}");
+            let off = is_off_nearest(x, &terms, [0.0, 1.0], 0.5 * nearest);
+            ruled_out += u32::from(off);
+            kept += u32::from(!off);
+        }
+    }
+    assert!(ruled_out > kept, "{ruled_out} of {} at half of their distance", ruled_out + kept);
 }
 
 #[test]
