@@ -99,6 +99,9 @@ mod tests {
         // Within the cone, as it is; beyond it on either side, the normal of the face there.
         let inside = Vector3::new(0.25 * 0.5f64.powi(20), 0.0, 1.0);
         assert_eq!(m.cone_normal(ridge, &(inside * least)), inside.try_normalize(0.0));
+        // What rounding has left along the ridge is none of it.
+        let slanted = m.cone_normal(ridge, &((inside + Vector3::y() * 0.25) * least)).unwrap();
+        assert!((slanted - inside.normalize()).norm() <= 1e-15, "{slanted}");
         for (x, face) in [(-0.5, 0), (0.5, 1)] {
             let away = Vector3::new(x * 0.5f64.powi(14), 0.0, 1.0) * least;
             assert_eq!(m.cone_normal(ridge, &away), Some(normals[face]), "{x}");
