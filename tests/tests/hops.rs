@@ -4,6 +4,7 @@ use carom_dynamics::body::State;
 use carom_dynamics::collision::Obstacles;
 use carom_dynamics::contacts::Contacts;
 use carom_dynamics::counters::Counters;
+use carom_dynamics::events::Event;
 use carom_dynamics::integrators::{Step, exact};
 use carom_geometry::closest::closest_point;
 use carom_geometry::contact::{Contact, MovingBall, first_contact};
@@ -140,5 +141,29 @@ fn h06_what_a_ball_has_seen_changes_nothing_of_what_it_meets_next() {
         }
         println!("{name}: {tally:?}");
         assert!(tally.hops > 4 * balls as u32 && tally.known * 4 > tally.hops, "too few hops prove little: {tally:?}");
+    }
+}
+
+#[test]
+fn h06_a_ball_that_hops_along_a_floor_meets_the_wall_at_its_end_in_time() {
+    // What it knows of the floor behind it says nothing of the wall, wherever on its way it has learnt it.
+    let corners = [[-10.0, 0.0], [10.0, 0.0]].map(|[x, z]| [[x, -10.0, z], [x, 10.0, z]]);
+    let top = [[10.0, -10.0, 10.0], [10.0, 10.0, 10.0]];
+    let vertices: Vec<Point3<f64>> = corners.iter().flatten().chain(&top).map(|p| Point3::from(*p)).collect();
+    let faces = vec![[0, 2, 3], [0, 3, 1], [2, 4, 5], [2, 5, 3]];
+    let radius = 0.5;
+    for (speed, up) in [(0.5, 1.0), (1.0, 0.25), (2.5, 1.0)] {
+        let hop = 2.0 * up / 10.0;
+        for k in 0..40 {
+            // The floor is hit at the end of each hop; it starts on the floor, with a whole one ahead.
+            let x = 3.0 + 0.017 * f64::from(k);
+            let t = (10.0 - radius - x) / speed;
+            let stage = Stage::new(t + 1.0).down(10.0).mesh("room", smooth(1.0), vertices.clone(), faces.clone());
+            let run = stage.ball([x, 0.3, radius], [speed, 0.0, up], radius).run();
+            let (walls, floors): (Vec<Event>, Vec<Event>) = run.impacts().iter().partition(|e| e.normal.x < -0.5);
+            assert_eq!(walls.len(), 1, "from {x} at {speed}");
+            assert!((walls[0].time - t).abs() <= 1e-12 * t, "from {x} at {speed}: {} s, not {t}", walls[0].time);
+            assert_eq!(floors.len() as f64, ((t + 1.0) / hop - 1e-9).floor(), "from {x} at {speed}");
+        }
     }
 }

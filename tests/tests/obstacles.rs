@@ -167,13 +167,18 @@ fn what_a_ball_leaves_of_one_mesh_says_nothing_of_another() {
     // The last face of a cube is left for a mesh that has but one.
     let (vertices, faces) = solids::cube();
     let last = faces.len() - 1;
-    let lid = [[-4.0, -4.0, 4.0], [4.0, -4.0, 4.0], [0.0, 4.0, 4.0]].map(Point3::from).to_vec();
+    let lid = [[-16.0, -16.0, 4.0], [16.0, -16.0, 4.0], [0.0, 16.0, 4.0]].map(Point3::from).to_vec();
     let scene = Stage::new(1.0).mesh("lid", smooth(1.0), lid, vec![[0, 1, 2]]);
     let plan = scene.mesh("cube", smooth(1.0), vertices.clone(), faces.clone()).ball([9.0; 3], [0.0; 3], RADIUS).plan();
     let step = line([0.5, -0.5, 1.5], [0.0, 0.0, 4.0]);
     for site in [Site::Face(last as u32), Site::Face(2), Site::Face(0)] {
         let leaving = Contact { surface: 1, rate: 4.0, ..resting(site, Vector3::z()) };
         assert_eq!(first_hit(&plan, &step, &[leaving]), Some((0.5, 0)), "from {site:?}");
+        // On a hop that would be back after a second, at the height of 9 f - 9 f^2, it is first at 2.
+        let start = State { position: step.path.start(), velocity: Vector3::z() * 9.0 };
+        let hop = exact::step(&start, Vector3::z() * -18.0, 1.0);
+        let (f, surface) = first_hit(&plan, &hop, &[Contact { rate: 9.0, ..leaving }]).unwrap();
+        assert!((f - 1.0 / 3.0).abs() < 1e-15 && surface == 0, "from {site:?}: {f}");
     }
     // From the edge of a blade to the same face of another.
     let blade = |z: f64| [[0.0, -4.0, z], [0.0, 4.0, z], [0.0, 0.0, 4.0 * z.signum()]].map(Point3::from).to_vec();
