@@ -39,8 +39,7 @@ impl Carrier {
 
     /// How fast the clearance would accelerate, in m/s^2, if a ball in `state`, which moves along it, were left to the acceleration `a`.
     pub fn lift(&self, a: &Vector3<f64>, state: &State) -> f64 {
-        let n = self.normal(&state.position);
-        n.dot(a) + self.centripetal(&(state.velocity - n * n.dot(&state.velocity)))
+        self.normal(&state.position).dot(a) + self.centripetal(&state.velocity)
     }
 
     /// The part of the acceleration towards it that is rounding: that of the `position`, seen from so near.
