@@ -4,5 +4,6 @@ pub mod cases;
 pub mod clock;
 pub mod random;
 pub mod terrain;
+pub mod segments;
 pub mod scenes;
 pub mod operations;

@@ -1,48 +1,58 @@
-//! The queries as Embree's robust mode has them, where Debian's `libembree-dev` and a C++ compiler are installed.
+//! The segments as Embree has them: a program in C++, compiled and run where the compiler and Debian's `libembree-dev` are there.
 
-use crate::segments::Segments;
 use carom_benches::scenes::Result;
+use carom_benches::segments::Segment;
 use nalgebra::Point3;
-use std::io::Write;
-use std::path::PathBuf;
-use std::process::{Command, Stdio};
+use std::env::temp_dir;
+use std::fs;
+use std::process::{Command, Stdio, id};
 
-/// The program that asks Embree, compiled.
-pub struct Embree(PathBuf);
+const PROGRAM: &str = include_str!("embree.cpp");
 
-impl Embree {
-    /// Compiles it; none where that cannot be done.
-    pub fn new() -> Option<Self> {
-        let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
-        let (source, program) = (folder.join("src/embree.cpp"), folder.join("target/embree"));
-        let mut compiler = Command::new("c++");
-        compiler.args(["-O3", "-o"]).arg(&program).arg(source).arg("-lembree3").stderr(Stdio::null());
-        compiler.status().is_ok_and(|status| status.success()).then_some(Self(program))
+/// The median times in ns of a segment of each set, of so many runs; none where Embree cannot be had.
+pub fn segments(
+    vertices: &[Point3<f64>],
+    faces: &[[u32; 3]],
+    sets: &[&[Segment]],
+    runs: usize,
+) -> Result<Option<Vec<f64>>> {
+    let folder = temp_dir().join(format!("carom-embree-{}", id()));
+    fs::create_dir_all(&folder)?;
+    let times = in_folder(&folder, vertices, faces, sets, runs);
+    fs::remove_dir_all(&folder)?;
+    times
+}
+
+fn in_folder(
+    folder: &std::path::Path,
+    vertices: &[Point3<f64>],
+    faces: &[[u32; 3]],
+    sets: &[&[Segment]],
+    runs: usize,
+) -> Result<Option<Vec<f64>>> {
+    let (source, program, data) = (folder.join("embree.cpp"), folder.join("embree"), folder.join("data"));
+    fs::write(&source, PROGRAM)?;
+    let mut compile = Command::new("g++");
+    compile.args(["-O3", "-o"]).args([&program, &source]).arg("-lembree3").stderr(Stdio::null());
+    if !compile.status().is_ok_and(|status| status.success()) {
+        eprintln!("segments: no Embree here (Debian's libembree-dev and g++)");
+        return Ok(None);
     }
-
-    /// The seconds that each of `sets` takes against the mesh, and how many of its segments meet it.
-    pub fn times(&self, vertices: &[Point3<f64>], faces: &[[u32; 3]], sets: &[Segments]) -> Result<Vec<(f64, usize)>> {
-        let mut input: Vec<u8> = Vec::new();
-        let mut number = |n: usize| input.extend(u32::try_from(n).unwrap_or(u32::MAX).to_ne_bytes());
-        number(vertices.len());
-        number(faces.len());
-        let single = |x: &f64| (*x as f32).to_ne_bytes();
-        vertices.iter().flat_map(|v| v.iter()).for_each(|x| input.extend(single(x)));
-        faces.iter().flatten().for_each(|i| input.extend(i.to_ne_bytes()));
-        input.extend((sets.len() as u32).to_ne_bytes());
-        for set in sets {
-            input.extend((set.len() as u32).to_ne_bytes());
-            set.iter().flat_map(|(from, along)| from.iter().chain(along.iter())).for_each(|x| input.extend(single(x)));
-        }
-        let mut program = Command::new(&self.0).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn()?;
-        // Taken, so that it is closed where all is written.
-        program.stdin.take().ok_or("no standard input")?.write_all(&input)?;
-        let output = program.wait_with_output()?;
-        let text = String::from_utf8(output.stdout)?;
-        let row = |line: &str| {
-            let (seconds, hits) = line.split_once(' ')?;
-            Some((seconds.parse().ok()?, hits.parse().ok()?))
-        };
-        text.lines().map(|line| row(line).ok_or_else(|| format!("Embree's program says {line}").into())).collect()
+    // Numbers of vertices, faces, sets and runs, and for each set that of its segments; then f32 and u32, all in the order of this machine.
+    let mut bytes = Vec::new();
+    let counts = [vertices.len(), faces.len(), sets.len(), runs].into_iter().chain(sets.iter().map(|set| set.len()));
+    counts.for_each(|n| bytes.extend((n as u64).to_ne_bytes()));
+    let mut put = |c: &f64| bytes.extend((*c as f32).to_ne_bytes());
+    vertices.iter().for_each(|v| v.iter().for_each(&mut put));
+    faces.iter().flatten().for_each(|v| bytes.extend(v.to_ne_bytes()));
+    let mut put = |c: &f64| bytes.extend((*c as f32).to_ne_bytes());
+    sets.iter().copied().flatten().for_each(|(from, along)| from.iter().chain(along.iter()).for_each(&mut put));
+    fs::write(&data, bytes)?;
+    let output = Command::new(&program).arg(&data).output()?;
+    if !output.status.success() {
+        return Err(String::from_utf8_lossy(&output.stderr).into_owned().into());
     }
+    let times =
+        String::from_utf8(output.stdout)?.lines().map(str::parse).collect::<std::result::Result<Vec<f64>, _>>()?;
+    Ok((times.len() == sets.len()).then_some(times))
 }

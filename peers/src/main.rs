@@ -29,9 +29,6 @@ const RUNS: usize = 5;
 /// Balls on the terrain, by Carom.
 const BALLS: usize = 10_000;
 
-/// Squares along a side for which the terrain has 1 002 528 triangles.
-const SQUARES_OF_A_MILLION: u32 = 708;
-
 /// A row of the table: the work, its unit, and what it takes.
 struct Row {
     work: String,
@@ -52,13 +49,7 @@ fn main() -> Result<()> {
     let mut rows = vec![one_ball()?];
     rows.extend(terrain_balls(rapier_balls)?);
     rows.push(room()?);
-    let embree = embree::Embree::new();
-    if embree.is_none() {
-        eprintln!("no Embree: its rows need a C++ compiler and Debian's libembree-dev");
-    }
-    for squares in [SQUARES, SQUARES_OF_A_MILLION] {
-        rows.extend(segments::rows(squares, embree.as_ref())?);
-    }
+    rows.extend(segments::rows()?);
     rows.extend([one_triangle(), prediction()?]);
     println!("| work | Carom | peer | ratio |\n|---|---|---|---|");
     for Row { work, unit, carom, peer, theirs } in rows {

@@ -1,100 +1,62 @@
-//! Segments against the terrain: Carom, certified, beside parry3d in f64 and Embree's robust mode in f32, which are not.
+//! Segments against the terrain, by Carom, by parry3d-f64 and, where it is installed, by Embree.
 
-use crate::{RUNS, Row, embree::Embree, parry};
+use crate::{RUNS, Row, embree, parry};
 use carom_benches::clock::seconds;
-use carom_benches::random::Random;
 use carom_benches::scenes::Result;
-use carom_benches::terrain::{HALF, height, terrain};
+use carom_benches::segments::{Segment, long, short, sorted};
+use carom_benches::terrain::{SQUARES, terrain};
 use carom_geometry::mesh::Mesh;
 use carom_geometry::sweep::Work;
-use nalgebra::{Point3, Vector3};
 use std::hint::black_box;
 
-/// Where each begins, and how far it goes.
-pub type Segments = Vec<(Point3<f64>, Vector3<f64>)>;
-
-/// Segments of a set.
+/// Segments of one kind.
 const COUNT: usize = 100_000;
 
-/// The sets: a metre, which is a bounce or so, and longer than the hills are; in random order, and neighbours together.
-const SETS: [&str; 4] = ["short", "short, sorted", "long", "long, sorted"];
+/// Squares along a side for which the terrain has 999 698 triangles.
+const MANY_SQUARES: u32 = 707;
 
-/// The rows of the terrain of `squares` x `squares` squares.
-pub fn rows(squares: u32, embree: Option<&Embree>) -> Result<Vec<Row>> {
-    let (vertices, faces) = terrain(squares);
-    let sets = [short(), sorted(short()), long(), sorted(long())];
-    let embree = embree.map(|embree| embree.times(&vertices, &faces, &sets)).transpose()?;
-    let parry = parry::Obstacle::new(&vertices, &faces)?;
-    let triangles = faces.len();
-    let mesh = Mesh::new(vertices, faces)?;
+/// A row for each kind of segments and each peer, on either terrain.
+pub fn rows() -> Result<Vec<Row>> {
     let mut rows = Vec::new();
-    for (k, segments) in sets.iter().enumerate() {
-        let meets = |(from, along): &(Point3<f64>, Vector3<f64>)| {
-            mesh.first_pierced(from, &(from + along), &mut Work::default()).is_some()
-        };
-        let ours = || segments.iter().filter(|s| meets(s)).count();
-        let theirs = || segments.iter().filter(|(from, along)| parry.segment(from, along).is_some()).count();
-        let (hits, of_parry) = (ours(), theirs());
-        let of_embree = embree.as_ref().and_then(|sets| sets.get(k));
-        eprintln!(
-            "{triangles} triangles, {}: Carom meets {hits}, parry {of_parry}, Embree {:?} of {COUNT}",
-            SETS[k],
-            of_embree.map(|(_, hits)| hits)
-        );
-        // By turns, so that both have the same neighbours on the machine.
-        let (mut a, mut b) = (Vec::new(), Vec::new());
-        for _ in 0..RUNS {
-            a.push(seconds(|| _ = black_box(ours())));
-            b.push(seconds(|| _ = black_box(theirs())));
-        }
-        a.sort_by(f64::total_cmp);
-        b.sort_by(f64::total_cmp);
-        let each = |seconds: f64| 1.0e9 * seconds / COUNT as f64;
-        let row = |peer, theirs| Row {
-            work: format!("segments against {triangles} triangles, {}, certified", SETS[k]),
-            unit: "ns",
-            carom: each(a[RUNS / 2]),
-            peer,
-            theirs: Some(each(theirs)),
-        };
-        rows.push(row("parry3d-f64, not certified", b[RUNS / 2]));
-        if let Some((seconds, _)) = of_embree {
-            rows.push(row("Embree, robust, f32, not certified", *seconds));
+    for squares in [SQUARES, MANY_SQUARES] {
+        let (vertices, faces) = terrain(squares);
+        let kinds = [
+            ("short segments, random order", short(COUNT)),
+            ("short segments, sorted", sorted(short(COUNT))),
+            ("long segments, random order", long(COUNT)),
+            ("long segments, sorted", sorted(long(COUNT))),
+        ];
+        let sets: Vec<&[Segment]> = kinds.iter().map(|(_, segments)| segments.as_slice()).collect();
+        let embree = embree::segments(&vertices, &faces, &sets, RUNS)?;
+        let theirs = parry::Obstacle::new(&vertices, &faces)?;
+        let mesh = Mesh::new(vertices, faces)?;
+        for (k, (kind, segments)) in kinds.iter().enumerate() {
+            let work = format!("{kind}, against {} triangles", mesh.faces().len());
+            let (ours, parry) = by_turns(&mesh, &theirs, segments);
+            let row = |peer, theirs| Row { work: work.clone(), unit: "ns", carom: ours, peer, theirs: Some(theirs) };
+            rows.push(row("parry3d-f64, not certified", parry));
+            rows.extend(embree.as_ref().map(|times| row("Embree 3, f32, robust mode", times[k])));
         }
     }
     Ok(rows)
 }
 
-/// From half a metre above the terrain, a metre down or so.
-fn short() -> Segments {
-    let mut random = Random::new(3);
-    let mut one = || {
-        let (x, y) = (random.within(1.0 - HALF, HALF - 1.0), random.within(1.0 - HALF, HALF - 1.0));
-        let along = random.vector(0.6);
-        (Point3::new(x, y, height(x, y) + 0.5), Vector3::new(along.x, along.y, -1.0))
+/// The time in ns of a segment by Carom and by parry, by turns, so that both have the same neighbours on the machine.
+fn by_turns(mesh: &Mesh, theirs: &parry::Obstacle, segments: &[Segment]) -> (f64, f64) {
+    let ours = || {
+        let hits = |(from, along): &Segment| mesh.first_pierced(from, &(from + along), &mut Work::default()).is_some();
+        segments.iter().filter(|s| hits(s)).count()
     };
-    (0..COUNT).map(|_| one()).collect()
-}
-
-/// From above the hills to a point below them somewhere else, up to 10 m along each axis away.
-fn long() -> Segments {
-    let mut random = Random::new(4);
-    let mut one = || {
-        let (x, y) = (random.within(1.0 - HALF, HALF - 1.0), random.within(1.0 - HALF, HALF - 1.0));
-        let along = random.vector(10.0);
-        (Point3::new(x, y, 1.0), Vector3::new(along.x, along.y, -2.0))
+    let others = || segments.iter().filter(|(from, along)| theirs.segment(from, along).is_some()).count();
+    eprintln!("segments: Carom meets {}, parry {} of {}", ours(), others(), segments.len());
+    let (mut a, mut b) = (Vec::new(), Vec::new());
+    for _ in 0..RUNS {
+        a.push(seconds(|| _ = black_box(ours())));
+        b.push(seconds(|| _ = black_box(others())));
+    }
+    let each = |mut times: Vec<f64>| {
+        times.sort_by(f64::total_cmp);
+        1.0e9 * times[RUNS / 2] / segments.len() as f64
     };
-    (0..COUNT).map(|_| one()).collect()
-}
-
-/// The segments in the order of a curve through their starts that fills the plane (G. M. Morton, 1966).
-fn sorted(mut segments: Segments) -> Segments {
-    const CELLS: f64 = 1024.0;
-    let cell = |x: f64| ((x + HALF) / (2.0 * HALF) * CELLS) as u32;
-    let place = |(from, _): &(Point3<f64>, Vector3<f64>)| {
-        let (x, y) = (cell(from.x), cell(from.y));
-        (0..10).fold(0, |code, bit| code | (x >> bit & 1) << (2 * bit) | (y >> bit & 1) << (2 * bit + 1))
-    };
-    segments.sort_by_key(place);
-    segments
+    (each(a), each(b))
 }

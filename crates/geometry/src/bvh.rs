@@ -227,13 +227,19 @@ fn walk_plainly(
     stack: &mut [Pending],
     hit: &mut impl FnMut(u32) -> f64,
 ) -> u64 {
-    let (mut pending, mut visited, mut limit) = (0, 0, 1.0_f32);
+    let (mut pending, mut visited) = (0, 0);
+    // The limit that `hit` gave last, and the same in the part of the segment that is near the tree.
+    let (mut last, mut limit) = (f64::INFINITY, 1.0_f32);
     let mut child = Child::default();
     loop {
         if let Some(places) = child.items() {
             for &item in &items[places] {
-                let last = segment.local_limit(hit(item));
-                limit = if last < limit { last } else { limit };
+                let s = hit(item);
+                if s < last {
+                    last = s;
+                    let until = segment.local_limit(s);
+                    limit = if until < limit { until } else { limit };
+                }
             }
         } else if let Some(node) = nodes.get(child.0 as usize) {
             visited += 1;

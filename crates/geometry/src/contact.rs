@@ -7,7 +7,7 @@
 //! support plane makes it exact for a face and quadratically convergent for edges and vertices.)
 
 use crate::bounds::{amax, largest};
-use crate::clearance::Entry;
+use crate::clearance::{Clearance, Entry};
 use crate::closest::{Asked, Feature};
 use crate::normal::unit;
 use crate::path::Path;
@@ -164,13 +164,13 @@ pub(crate) fn contact_from(ball: &MovingBall, asked: &Asked, from: f64, to: f64,
             return Contact::Miss;
         }
         *rounds += 1;
-        let support = Support::near(ball, asked, f, 2.0 * bound_at(f));
-        let plane = path.clearance(support.gap, &support.normal);
+        let bound = bound_at(f);
+        let (support, plane) = Support::near(ball, asked, f, 2.0 * bound);
         let (height, falling) = (plane.at(f), plane.rate(f) < 0.0);
-        if height <= 2.0 * bound_at(f) && falling {
+        if height <= 2.0 * bound && falling {
             return Contact::At {
                 feature: support.feature,
-                f: polish(ball, asked, support, f, end, bound_at(f), rounds),
+                f: polish(ball, asked, (support, plane), f, end, bound, rounds),
             };
         }
         let (entry, bound) = meets(support.gap, &support.normal, f);
@@ -178,7 +178,10 @@ pub(crate) fn contact_from(ball: &MovingBall, asked: &Asked, from: f64, to: f64,
             return Contact::Miss;
         };
         if (height <= 2.0 * bound && falling) || next - f <= 2.0 * UNIT_ROUNDOFF * f {
-            return Contact::At { feature: support.feature, f: polish(ball, asked, support, f, end, bound, rounds) };
+            return Contact::At {
+                feature: support.feature,
+                f: polish(ball, asked, (support, plane), f, end, bound, rounds),
+            };
         }
         f = next;
     }
@@ -218,21 +221,26 @@ impl Support {
         Self { normal, gap, feature: closest.feature }
     }
 
-    /// The plane that faces the ball at `f`; where the ball touches the border of the triangle to within `bound`, the better of that and the face's own.
+    /// The plane that faces the ball at `f`, and the path's clearance from it; where the ball touches the border of the triangle to within `bound`, the
+    /// better of that and the face's own.
     ///
     /// For a ball that is small beside the triangle, the direction to the border is rounding: a plane that it turns towards the face has that in
     /// front, and tells nothing; one that it turns away closes in on a ball that rises from the face.
-    fn near(ball: &MovingBall, asked: &Asked, f: f64, bound: f64) -> Self {
+    #[inline]
+    fn near(ball: &MovingBall, asked: &Asked, f: f64, bound: f64) -> (Self, Clearance) {
         let support = Self::at(ball, asked, f);
         let plane = ball.path.clearance(support.gap, &support.normal);
-        let height = plane.at(f);
-        if support.feature == Feature::Face || height > bound {
-            return support;
+        if support.feature == Feature::Face {
+            return (support, plane);
         }
-        let Some((gap, normal)) = face_plane(asked, ball, f) else { return support };
+        let height = plane.at(f);
+        if height > bound {
+            return (support, plane);
+        }
+        let Some((gap, normal)) = face_plane(asked, ball, f) else { return (support, plane) };
         let face = ball.path.clearance(gap, &normal);
         let better = face.at(f) >= -bound && (height < -bound || face.rate(f) >= 0.0);
-        if better { Self { gap, normal, ..support } } else { support }
+        if better { (Self { gap, normal, ..support }, face) } else { (support, plane) }
     }
 }
 
@@ -248,10 +256,18 @@ const MAX_POLISH: u32 = 8;
 /// From `f`, where the ball touches to within the bound, to where it touches: support planes again, now where they are. The triangle
 /// is behind them all the same, so this ends at the contact to the rounding of the planes: on a face at once, at an edge or a vertex in
 /// a step or two of Newton's method.
-fn polish(ball: &MovingBall, asked: &Asked, support: Support, f: f64, to: f64, bound: f64, rounds: &mut u64) -> f64 {
-    let (mut f, mut support) = (f, support);
+fn polish(
+    ball: &MovingBall,
+    asked: &Asked,
+    met: (Support, Clearance),
+    f: f64,
+    to: f64,
+    bound: f64,
+    rounds: &mut u64,
+) -> f64 {
+    let (mut f, (mut support, mut plane)) = (f, met);
     for _ in 0..MAX_POLISH {
-        let Entry::At { f: next, .. } = ball.path.clearance(support.gap, &support.normal).first_entry(f, to) else {
+        let Entry::At { f: next, .. } = plane.first_entry(f, to) else {
             break;
         };
         let arrived = next - f <= 2.0 * UNIT_ROUNDOFF * f || support.feature == Feature::Face;
@@ -260,7 +276,7 @@ fn polish(ball: &MovingBall, asked: &Asked, support: Support, f: f64, to: f64, b
             break;
         }
         *rounds += 1;
-        support = Support::near(ball, asked, f, 2.0 * bound);
+        (support, plane) = Support::near(ball, asked, f, 2.0 * bound);
     }
     f
 }

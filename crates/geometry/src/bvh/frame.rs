@@ -80,14 +80,14 @@ impl Frame {
         if !(radius <= HOPELESS && reach <= HOPELESS / UNIT_ROUNDOFF) {
             return Some(all());
         }
+        if reach <= NEAR {
+            return Some(LocalSegment::new(0.0, 1.0, a, b, radius));
+        }
         // Boxes of the tree lie within NEAR at every scale.
         let limit = NEAR + radius;
         let off = |i: usize| (a[i] > limit) & (b[i] > limit) | (a[i] < -limit) & (b[i] < -limit);
         if off(0) | off(1) | off(2) {
             return None;
-        }
-        if reach <= NEAR {
-            return Some(LocalSegment::new(0.0, 1.0, a, b, radius));
         }
         let d = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
         let (s0, s1) = clip(&a, &d, (1.0 + radius) * (1.0 + gamma(2)))?;
