@@ -159,6 +159,7 @@ pub(crate) fn contact_from(ball: &MovingBall, asked: &Asked, from: f64, to: f64,
             Entry::At { f: next, .. } => f = next,
         }
     }
+    let mut guessed = false;
     for _ in 0..MAX_ROUNDS {
         if f > to {
             return Contact::Miss;
@@ -173,10 +174,36 @@ pub(crate) fn contact_from(ball: &MovingBall, asked: &Asked, from: f64, to: f64,
                 f: polish(ball, asked, (support, plane), f, end, bound, rounds),
             };
         }
+        let ahead = if guessed { None } else { guess(ball, asked, support.feature, f, bound) };
+        let (support, plane, seen) = match ahead {
+            Some(seen) if seen < end => {
+                *rounds += 1;
+                let (ahead, its_plane) = Support::near(ball, asked, seen, 2.0 * bound_at(seen));
+                // What the ball does not overlap now says as much from here on.
+                if its_plane.at(f) > 2.0 * bound { (ahead, its_plane, seen) } else { (support, plane, f) }
+            }
+            _ => (support, plane, f),
+        };
+        guessed = true;
         let (entry, bound) = meets(support.gap, &support.normal, f);
         let Entry::At { f: next, .. } = entry else {
             return Contact::Miss;
         };
+        if seen > f {
+            f = next;
+            let touches = plane.at(seen).abs() <= 2.0 * bound_at(seen) && plane.rate(seen) < 0.0;
+            if f > to || !touches {
+                continue;
+            }
+            let at = plane.first_entry(f, end).f().unwrap_or(f);
+            // A ball that moves by m from where its plane was taken is m^2 / 2 r farther off than the plane says.
+            let moved = path.displacement(at) - path.displacement(seen);
+            let is_there = moved.norm_squared() <= UNIT_ROUNDOFF * ball.radius * ball.radius;
+            return Contact::At {
+                feature: support.feature,
+                f: if is_there { at } else { polish(ball, asked, (support, plane), f, end, bound, rounds) },
+            };
+        }
         if (height <= 2.0 * bound && falling) || next - f <= 2.0 * UNIT_ROUNDOFF * f {
             return Contact::At {
                 feature: support.feature,
@@ -189,6 +216,39 @@ pub(crate) fn contact_from(ball: &MovingBall, asked: &Asked, from: f64, to: f64,
         return Contact::Miss;
     }
     Contact::At { f, feature: Support::at(ball, asked, f).feature }
+}
+
+/// Steps to a guess: a straight path needs one, and a parabola doubles its digits with each.
+const MAX_GUESS: u32 = 6;
+
+/// Where after `f` the ball seems to touch the vertex or the line of the edge that is nearest, or to pass it: as if the path went straight on, and again from
+/// there. It says where to look; what is seen from there decides.
+fn guess(ball: &MovingBall, asked: &Asked, feature: Feature, f: f64, bound: f64) -> Option<f64> {
+    let corners = asked.corners();
+    let (origin, along) = match feature {
+        Feature::Face => return None,
+        Feature::Edge(i) => (corners[usize::from(i)], corners[(usize::from(i) + 1) % 3] - corners[usize::from(i)]),
+        Feature::Vertex(i) => (corners[usize::from(i)], Vector3::zeros()),
+    };
+    let square = along.norm_squared();
+    let per_square = if square > 0.0 { 1.0 / square } else { 0.0 };
+    let across = |v: Vector3<f64>| v - along * (along.dot(&v) * per_square);
+    let mut at = f;
+    for _ in 0..MAX_GUESS {
+        let (away, velocity) = (across(ball.path.displacement(at) - origin), across(ball.path.derivative(at)));
+        let (a, b) = (velocity.norm_squared(), away.dot(&velocity));
+        let c = away.norm_squared() - ball.radius * ball.radius;
+        if c.abs() <= 2.0 * bound * ball.radius {
+            break;
+        }
+        let discriminant = b * b - a * c;
+        if discriminant < 0.0 || b >= 0.0 {
+            at -= b / a; // where it is nearest
+            break;
+        }
+        at += c / (discriminant.sqrt() - b);
+    }
+    (at > f).then_some(at)
 }
 
 /// The distance between the ball at the start and the plane of the triangle, seen from the side the ball is on at `f`, and the normal
