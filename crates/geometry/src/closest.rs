@@ -101,6 +101,12 @@ impl Asked {
     }
 }
 
+/// Whether an edge begins at `p` rather than at `q`, from whichever face it is seen.
+#[inline]
+pub(crate) fn is_lower(p: &Vector3<f64>, q: &Vector3<f64>) -> bool {
+    (p.x, p.y, p.z) <= (q.x, q.y, q.z)
+}
+
 /// The triangle and the point scaled by 2^-k to a size of about 1; none if there is no need.
 pub(crate) fn to_unit_scale(
     triangle: &[Point3<f64>; 3],
@@ -187,8 +193,7 @@ impl Frame {
         let inside = |p: &Vector3<f64>, q: &Vector3<f64>| n.dot(&p.cross(q));
         // From the end with the lower coordinates and without the third vertex: the same bits from each face that has the edge.
         let along = |p: &Point3<f64>, q: &Point3<f64>, feature| {
-            let is_lower = (p.x, p.y, p.z) <= (q.x, q.y, q.z);
-            let (from, to) = if is_lower { (p, q) } else { (q, p) };
+            let (from, to) = if is_lower(&p.coords, &q.coords) { (p, q) } else { (q, p) };
             let (edge, offset) = (to - from, x - from);
             let length = edge.norm_squared();
             if length == 0.0 {

@@ -1,7 +1,7 @@
 //! Looking for a contact where it seems to be: the plane that is seen from there often tells all at once.
 
 use super::{Contact, Entry, Query, Support};
-use crate::closest::Feature;
+use crate::closest::{Feature, is_lower};
 use crate::rounding::UNIT_ROUNDOFF;
 use nalgebra::Vector3;
 
@@ -61,7 +61,10 @@ impl Query<'_> {
         let (corners, path, radius) = (self.asked.corners(), self.ball.path, self.ball.radius);
         let (origin, along) = match feature {
             Feature::Face => return None,
-            Feature::Edge(i) => (corners[usize::from(i)], corners[(usize::from(i) + 1) % 3] - corners[usize::from(i)]),
+            Feature::Edge(i) => {
+                let (p, q) = (corners[usize::from(i)], corners[(usize::from(i) + 1) % 3]);
+                if is_lower(&p, &q) { (p, q - p) } else { (q, p - q) }
+            }
             Feature::Vertex(i) => (corners[usize::from(i)], Vector3::zeros()),
         };
         let square = along.norm_squared();
