@@ -1,6 +1,6 @@
 //! The point of a triangle closest to a given one, for triangles of any shape and size.
 
-use crate::bounds::{amax, largest};
+use crate::bounds::{amax, is_lower, largest};
 use crate::normal::cross_compensated;
 use crate::rounding::{LEAST_SINE_SQUARED, NEEDLE_SINE_SQUARED, exponent, power_of_two, scale};
 use nalgebra::{Point3, Vector3};
@@ -99,12 +99,6 @@ impl Asked {
         let (square, side) = (self.frame.normal.norm_squared(), self.size * self.size);
         (square > side * LEAST_SINE_SQUARED * side).then(|| self.frame.normal / square.sqrt())
     }
-}
-
-/// Whether an edge begins at `p` rather than at `q`, from whichever face it is seen.
-#[inline]
-pub(crate) fn is_lower(p: &Vector3<f64>, q: &Vector3<f64>) -> bool {
-    (p.x, p.y, p.z) <= (q.x, q.y, q.z)
 }
 
 /// The triangle and the point scaled by 2^-k to a size of about 1; none if there is no need.

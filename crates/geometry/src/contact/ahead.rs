@@ -1,8 +1,9 @@
 //! Looking for a contact where it seems to be: the plane that is seen from there often tells all at once.
 
 use super::{Contact, Entry, Query, Support};
-use crate::closest::{Feature, is_lower};
-use crate::rounding::UNIT_ROUNDOFF;
+use crate::bounds::is_lower;
+use crate::closest::Feature;
+use crate::rounding::{UNIT_ROUNDOFF, exponent, power_of_two};
 use nalgebra::Vector3;
 
 /// How often to look ahead: the edge that is nearest first may not be the one, nor its end.
@@ -24,9 +25,11 @@ impl Query<'_> {
     /// that the ball does not overlap at `f` is a certificate from there on, wherever it was taken.
     pub(super) fn look_ahead(&self, feature: Feature, f: f64, to: f64, rounds: &mut u64) -> Ahead {
         let (path, radius) = (self.ball.path, self.ball.radius);
+        // In a unit in which squares are in range.
+        let unit = power_of_two(-exponent(self.size));
         let (mut f, mut feature) = (f, feature);
         for _ in 0..MAX_LOOKS {
-            let Some(there) = self.seems_to_touch(feature, f).filter(|there| *there < self.end) else { break };
+            let Some(there) = self.seems_to_touch(feature, f, unit).filter(|there| *there < self.end) else { break };
             *rounds += 1;
             let near = 2.0 * self.bound_at(there);
             let (support, plane) = Support::near(self.ball, self.asked, there, near);
@@ -41,8 +44,8 @@ impl Query<'_> {
             if plane.at(there).abs() <= near && plane.rate(there) < 0.0 {
                 let at = plane.first_entry(f, self.end).f().unwrap_or(f);
                 // A ball that moves by m from where its plane was taken is m^2 / 2 r farther off than the plane says.
-                let moved = path.displacement(at) - path.displacement(there);
-                let is_there = moved.norm_squared() <= UNIT_ROUNDOFF * radius * radius;
+                let moved = (path.displacement(at) - path.displacement(there)) * unit;
+                let is_there = moved.norm_squared() <= UNIT_ROUNDOFF * (radius * unit) * (radius * unit);
                 let feature = support.feature;
                 let f = if is_there { at } else { self.polish((support, plane), f, bound, rounds) };
                 return Ahead::Ends(Contact::At { f, feature });
@@ -56,9 +59,10 @@ impl Query<'_> {
     }
 
     /// Where after `f` the ball seems to touch a vertex or the line of an edge, or to pass it: as if the path went straight on, and again from there. Rounding
-    /// and the other features are not asked.
-    fn seems_to_touch(&self, feature: Feature, f: f64) -> Option<f64> {
-        let (corners, path, radius) = (self.asked.corners(), self.ball.path, self.ball.radius);
+    /// and the other features are not asked. `unit` is what lengths are multiplied by.
+    fn seems_to_touch(&self, feature: Feature, f: f64, unit: f64) -> Option<f64> {
+        let (path, radius) = (self.ball.path, self.ball.radius * unit);
+        let corners = self.asked.corners().map(|corner| corner * unit);
         let (origin, along) = match feature {
             Feature::Face => return None,
             Feature::Edge(i) => {
@@ -70,10 +74,10 @@ impl Query<'_> {
         let square = along.norm_squared();
         let per_square = if square > 0.0 { 1.0 / square } else { 0.0 };
         let across = |v: Vector3<f64>| v - along * (along.dot(&v) * per_square);
-        let near = 2.0 * self.bound_at(f) * radius;
+        let near = 2.0 * self.bound_at(f) * unit * radius;
         let mut at = f;
         for _ in 0..MAX_STEPS {
-            let (away, velocity) = (across(path.displacement(at) - origin), across(path.derivative(at)));
+            let (away, velocity) = (across(path.displacement(at) * unit - origin), across(path.derivative(at) * unit));
             let (a, b) = (velocity.norm_squared(), away.dot(&velocity));
             let c = away.norm_squared() - radius * radius;
             if c.abs() <= near {
