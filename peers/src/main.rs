@@ -1,4 +1,4 @@
-//! Times the same work by Carom, rapier3d, parry3d and, where it is installed, Embree, in one run on one machine, and prints a table in Markdown.
+//! Times the same work by Carom, rapier3d, parry3d and Embree, in one run on one machine, and prints a table in Markdown.
 //!
 //! `carom-peers [BALLS]`: so many balls on the terrain for rapier, which takes a hundred times as long for each.
 //! `carom-peers conformance PACK OUT` writes what rapier makes of the conformance pack instead.
@@ -10,15 +10,18 @@ mod rapier;
 mod segments;
 
 use carom_benches::cases::ball_and_triangle;
-use carom_benches::clock::{median, peak_memory};
+use carom_benches::clock::{median, peak_memory, seconds};
 use carom_benches::scenes::{self, Result};
 use carom_benches::terrain::{HALF, SQUARES, height};
 use carom_dynamics::counters::Counters;
 use carom_dynamics::plan::Plan;
+use carom_dynamics::run::run_balls;
 use carom_dynamics::simulate::simulate;
 use carom_geometry::contact::{MovingBall, first_contact};
 use nalgebra::Vector3;
 use std::hint::black_box;
+use std::ops::ControlFlow;
+use std::time::Instant;
 
 /// Runs of which the median counts.
 const RUNS: usize = 5;
@@ -43,7 +46,9 @@ fn main() -> Result<()> {
         return conformance::run(pack.as_ref(), out.as_ref());
     }
     let rapier_balls = arguments.first().map_or(Ok(500), |n| n.parse())?;
-    let mut rows = vec![one_ball()?, terrain_balls(rapier_balls)?, room()?];
+    let mut rows = vec![one_ball()?];
+    rows.extend(terrain_balls(rapier_balls)?);
+    rows.push(room()?);
     rows.extend(segments::rows()?);
     rows.extend([one_triangle(), prediction()?]);
     println!("| work | Carom | peer | ratio |\n|---|---|---|---|");
@@ -61,14 +66,40 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-/// All balls of a plan, one after the other: the time, and what was done.
-fn run(plan: &Plan) -> (f64, Counters) {
+/// All balls of a plan on so many threads, by a clock of choice: the time, and what was done.
+fn run(plan: &Plan, threads: usize, clock: fn(&mut dyn FnMut()) -> f64) -> Result<(f64, Counters)> {
+    let mut times = Vec::new();
     let mut counters = Counters::default();
-    let time = median(RUNS, || {
+    for _ in 0..RUNS {
         counters = Counters::default();
-        plan.balls().iter().for_each(|ball| counters += simulate(plan, ball, &mut ()).counters);
-    });
-    (time, counters)
+        let mut ended = Ok(());
+        times.push(clock(&mut || {
+            ended = run_balls(
+                plan,
+                Some(threads),
+                |_| (),
+                |_, (), outcome| {
+                    counters += outcome.counters;
+                    ControlFlow::Continue(())
+                },
+            );
+        }));
+        ended?;
+    }
+    times.sort_by(f64::total_cmp);
+    Ok((times[RUNS / 2], counters))
+}
+
+/// The time on the wall, in s, for what is done on more than one core.
+fn wall(work: &mut dyn FnMut()) -> f64 {
+    let start = Instant::now();
+    work();
+    start.elapsed().as_secs_f64()
+}
+
+/// The processor's time, in s.
+fn processor(work: &mut dyn FnMut()) -> f64 {
+    seconds(work)
 }
 
 fn one_ball() -> Result<Row> {
@@ -79,7 +110,7 @@ fn one_ball() -> Result<Row> {
     let time = median(RUNS, || (0..TIMES).for_each(|_| _ = black_box(simulate(&plan, ball, &mut ()))));
     let theirs = rapier::one_ball(DURATION, 1.0 / 60.0);
     Ok(Row {
-        work: "one ball on a plane, 3 s".to_owned(),
+        work: "one ball on a plane, 3 s".into(),
         unit: "us per simulated second",
         carom: 1.0e6 * time / (TIMES as f64 * DURATION),
         peer: "rapier3d at 1/60 s",
@@ -87,37 +118,43 @@ fn one_ball() -> Result<Row> {
     })
 }
 
-fn terrain_balls(rapier_balls: usize) -> Result<Row> {
+fn terrain_balls(rapier_balls: usize) -> Result<[Row; 2]> {
     const DURATION: f64 = 2.0;
     let plan = Plan::new(&scenes::balls_on_terrain(SQUARES, BALLS, 0.7, DURATION)?)?;
-    let (mut through, mut rows) = (0, 0.0);
-    let time = median(RUNS, || {
-        (through, rows) = (0, 0.0);
-        for ball in plan.balls() {
-            let end = simulate(&plan, ball, &mut ()).state.position;
-            // Off the edge of the terrain there is nothing to fall through.
-            let on = end.x.abs() < HALF && end.y.abs() < HALF;
-            through += usize::from(on && end.z < height(end.x, end.y));
-            rows += 1.0;
-        }
-    });
+    let through = |ball| {
+        let end = simulate(&plan, ball, &mut ()).state.position;
+        // Off the edge of the terrain there is nothing to fall through.
+        end.x.abs() < HALF && end.y.abs() < HALF && end.z < height(end.x, end.y)
+    };
+    let through = plan.balls().iter().filter(|ball| through(ball)).count();
     eprintln!("terrain: {through} of {BALLS} balls through the surface");
+    let (time, _) = run(&plan, 1, processor)?;
     let theirs = rapier::balls_on_terrain(rapier_balls, DURATION, 1.0 / 240.0)?;
-    Ok(Row {
-        work: "10 000 balls on 200 978 triangles, 2 s".to_owned(),
-        unit: "us per ball-second",
-        carom: 1.0e6 * time / (rows * DURATION),
-        peer: "rapier3d, ccd, internal edges fixed, at 1/240 s",
-        theirs: Some(1.0e6 * theirs / (rapier_balls as f64 * DURATION)),
-    })
+    let ((one, _), (two, _)) = (run(&plan, 1, wall)?, run(&plan, 2, wall)?);
+    Ok([
+        Row {
+            work: "10 000 balls on 200 978 triangles, 2 s".into(),
+            unit: "us per ball-second",
+            carom: 1.0e6 * time / (BALLS as f64 * DURATION),
+            peer: "rapier3d, ccd, internal edges fixed, at 1/240 s",
+            theirs: Some(1.0e6 * theirs / (rapier_balls as f64 * DURATION)),
+        },
+        Row {
+            work: "the same balls on two threads".into(),
+            unit: "times as fast as on one",
+            carom: one / two,
+            peer: "",
+            theirs: None,
+        },
+    ])
 }
 
 fn room() -> Result<Row> {
     let plan = Plan::new(&scenes::balls_in_room(BALLS, 10.0)?)?;
-    let (time, counters) = run(&plan);
+    let (time, counters) = run(&plan, 1, processor)?;
     let carom = 1.0e9 * time / counters.impacts as f64;
     Ok(Row {
-        work: "balls in a room of six elastic walls".to_owned(),
+        work: "balls in a room of six elastic walls".into(),
         unit: "ns per impact",
         carom,
         peer: "",
@@ -141,7 +178,7 @@ fn one_triangle() -> Row {
     ours.sort_by(f64::total_cmp);
     others.sort_by(f64::total_cmp);
     Row {
-        work: "a ball against a triangle, median of the cases with exact answers, certified".to_owned(),
+        work: "a ball against a triangle, median of the cases with exact answers, certified".into(),
         unit: "ns",
         carom: ours[ours.len() / 2],
         peer: "parry3d-f64, straight ones only",
@@ -152,7 +189,7 @@ fn one_triangle() -> Row {
 fn prediction() -> Result<Row> {
     const TIMES: usize = 100;
     let plan = Plan::new(&scenes::predicted(TIMES)?)?;
-    let (time, _) = run(&plan);
+    let time = median(RUNS, || plan.balls().iter().for_each(|ball| _ = black_box(simulate(&plan, ball, &mut ()))));
     let carom = 1.0e6 * time / TIMES as f64;
-    Ok(Row { work: "one ball 8 s ahead on 7938 triangles".to_owned(), unit: "us", carom, peer: "", theirs: None })
+    Ok(Row { work: "one ball 8 s ahead on 7938 triangles".into(), unit: "us", carom, peer: "", theirs: None })
 }

@@ -1,9 +1,14 @@
-//! The bounds that impacts carry, held against exact times: never less than the error, and not much more than rounding.
+//! The bounds that events carry, held against exact times: never less than the error, and not much more than rounding.
 
+use carom_dynamics::body::Ball;
+use carom_dynamics::effects::drag::Drag;
+use carom_dynamics::effects::friction::Friction;
+use carom_dynamics::effects::grip::Grip;
+use carom_dynamics::events::{Bound, Event, EventKind};
 use carom_geometry::rounding::UNIT_ROUNDOFF;
 use carom_tests::data::{csv, number};
-use carom_tests::oracle::Worst;
-use carom_tests::stage::{Stage, smooth};
+use carom_tests::oracle::{Table, Worst};
+use carom_tests::stage::{Run, Stage, coulomb, rough, smooth};
 use nalgebra::{Point3, Vector3};
 
 #[test]
@@ -62,4 +67,87 @@ fn r26_impacts_at_edges_and_vertices_are_within_their_bounds_down_to_grazes() {
     }
     assert!(compared >= 30, "only {compared} hits");
     times.settle();
+}
+
+/// The only event of a kind, and its bound.
+fn only(run: &Run, kind: EventKind) -> (Event, Bound) {
+    let [event] = run.events(kind)[..] else { panic!("{:?}", run.kinds()) };
+    (event, event.bound.unwrap_or_else(|| panic!("no bound: {event:?}")))
+}
+
+#[test]
+fn r26_the_ends_of_sliding_are_within_their_bounds() {
+    let mut times = Worst::of("times at the ends of sliding");
+    let mut places = Worst::of("places at the ends of sliding");
+    let mut see = |(event, bound): (Event, Bound), t: f64, x: f64, v: f64, place: &str| {
+        // What the closed form itself is rounded by.
+        let rounding = 8.0 * UNIT_ROUNDOFF;
+        times.see(event.time, t, bound.time + rounding * t, || place.to_owned());
+        places.see(event.position.x, x, bound.position + rounding * x, || place.to_owned());
+        assert!(bound.time <= 1024.0 * UNIT_ROUNDOFF * (t + 1.0 / v), "{place}: {bound:?}");
+        assert!(bound.position <= 1024.0 * UNIT_ROUNDOFF * (x + 64.0), "{place}: {bound:?}");
+    };
+    for (v, mu, g) in [(0.7, 0.3, 9.81), (12.3, 0.05, 1.62), (1e-3, 0.9, 24.79), (3.0, 0.5, 8.0)] {
+        // To a stop, in v / mu g on v^2 / 2 mu g.
+        let (t, x) = (v / (mu * g), v * v / (2.0 * (mu * g)));
+        let run = Stage::new(2.0 * t).down(g).floor(rough(0.5, coulomb(mu))).ball([0.0; 3], [v, 0.0, 0.0], 0.0).run();
+        see(only(&run, EventKind::Rest), t, x, v, &format!("stop from {v} under {mu} of {g}"));
+        // Over the edge of a table, on half of that way: in t / (2 + sqrt 2), and without friction at v.
+        let edge = 0.5 * x;
+        let table = [[edge, -1.0, 0.0], [edge, 1.0, 0.0], [-1.0, 1.0, 0.0], [-1.0, -1.0, 0.0]];
+        for (friction, t) in [(coulomb(mu), t / (2.0 + 2f64.sqrt())), (Friction::None, edge / v)] {
+            let run = Stage::new(2.0 * t).down(g).polygon("table", rough(0.5, friction), &table);
+            let run = run.ball([0.0; 3], [v, 0.0, 0.0], 0.0).run();
+            see(only(&run, EventKind::Leave), t, edge, v, &format!("off the table from {v} under {friction:?} of {g}"));
+        }
+    }
+    let table = Table::read("slide_to_roll");
+    for row in table.rows() {
+        let [alpha, mu, v0, r_omega0, g] = row.numbers(["alpha", "mu", "v0", "r_omega0", "g"]);
+        let [t, x] = row.numbers(["t_slip_ends", "x_slip"]);
+        let grips = rough(0.5, Friction::Grip(Grip::new(mu).unwrap()));
+        let ball = Ball::new(Point3::new(0.0, 0.0, 0.1), Vector3::new(v0, 0.0, 0.0), 0.1, None).unwrap();
+        let ball = ball.spinning(Vector3::y() * (r_omega0 / 0.1)).unwrap().with_inertia(alpha).unwrap();
+        let mut stage = Stage::new(2.0 * t).down(g).floor(grips);
+        stage.0.balls.push(ball);
+        see(only(&stage.run(), EventKind::Roll), t, x, v0.max(1.0), &format!("rolls from {v0} and {r_omega0}"));
+    }
+    Worst::settle_all([times, places]);
+}
+
+#[test]
+fn r26_the_end_of_bouncing_is_within_its_bound_and_the_rounding_of_its_hops() {
+    let mut times = Worst::of("times at which bouncing ends");
+    for (h, e, g) in [(2.0f64, 0.5, 9.81), (0.3, 0.8, 1.62), (1.0, 0.25, 8.0)] {
+        // sqrt(2 h / g) (1 + e) / (1 - e), of hops that each keep a few units of the time that went before.
+        let t = (2.0 * h / g).sqrt() * (1.0 + e) / (1.0 - e);
+        let run = Stage::new(2.0 * t).down(g).floor(smooth(e)).ball([0.0, 0.0, h], [1.0, 0.0, 0.0], 0.0).run();
+        let (slide, bound) = only(&run, EventKind::Slide);
+        let hops = run.impacts().len() as f64;
+        times.see(slide.time, t, bound.time + 8.0 * hops * UNIT_ROUNDOFF * t, || format!("{h} m, {e}, {g}"));
+        assert!(bound.time <= 64.0 * UNIT_ROUNDOFF * t, "{bound:?}");
+    }
+    times.settle();
+    // Without bouncing it is the impact itself, and its bound.
+    let run = Stage::new(2.0).down(8.0).floor(smooth(0.0)).ball([0.0, 0.0, 4.0], [1.0, 0.0, 0.0], 0.0).run();
+    let [impact, slide] = run.trajectory.events[..] else { panic!("{:?}", run.kinds()) };
+    assert_eq!((slide.kind, slide.time, slide.bound), (EventKind::Slide, impact.time, impact.bound));
+}
+
+#[test]
+fn r26_what_no_equation_was_solved_for_has_no_bound() {
+    // Around the edge of a table and off it where nothing presses it any more, on an integrated way.
+    let table = [[0.0, -1.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 1.0, 0.0], [-1.0, -1.0, 0.0]];
+    let stage = Stage::new(2.0).down(10.0).polygon("table", smooth(0.5), &table);
+    let run = stage.ball([-0.5, 0.0, 0.5], [1.0, 0.0, 0.0], 0.5).run();
+    assert_eq!(run.kinds(), [EventKind::Slide, EventKind::Leave]);
+    let [slide, leave] = [run.trajectory.events[0], run.trajectory.events[1]];
+    // It begins where it is laid; it is round by arccos((2 g r + v^2) / 3 g r) = arccos(11 / 15).
+    assert_eq!((slide.time, slide.bound.map(|bound| bound.time)), (0.0, Some(0.0)));
+    assert!((leave.normal.z - 11.0 / 15.0).abs() < 1e-9 && leave.bound.is_none(), "{leave:?}");
+    // To rest in the air, at the end of a step by which it is slow enough; and where a guard ends it.
+    let air = Stage::new(100.0).down(10.0).drag(Drag::linear(1.0).unwrap()).floor(rough(0.0, coulomb(0.25)));
+    let run = air.thing([0.0; 3], [1.0, 0.0, 0.0], 0.0, Some(1.0)).run();
+    let rest = run.events(EventKind::Rest);
+    assert!(rest.len() == 1 && rest[0].bound.is_none(), "{:?}", run.kinds());
 }

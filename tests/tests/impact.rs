@@ -68,7 +68,7 @@ fn r02_detection_determination_and_response_one_after_the_other() {
     assert_eq!(touched.len(), 1);
 
     // Response: which velocity.
-    let answer = respond(there.velocity, &mut touched, &[stage.0.surfaces[0].material], &mut counters);
+    let answer = respond(there.velocity, &mut touched, |_| &stage.0.surfaces[0].material, &mut counters);
     let event = stage.run().impacts()[0];
     assert_eq!((event.time, event.position), (step.time(hit.f), there.position));
     assert_eq!((event.velocity_in, event.velocity), (there.velocity, answer));

@@ -234,3 +234,24 @@ fn r12_a_thin_wedge_is_left_after_the_exact_number_of_hits() {
     Worst::settle_all([times, distances, speeds]);
     assert_eq!(skipped, 0, "wedges with more than {FEASIBLE} hits");
 }
+
+#[test]
+fn h20_a_wedge_of_any_angle_is_hit_once_for_each_of_its_images_that_the_straight_line_crosses() {
+    for degrees in [60.0, 7.0, 1.0, 0.1, 0.01] {
+        let angle = f64::to_radians(degrees);
+        let (sin, cos) = angle.sin_cos();
+        let wedge = Stage::new(1e6).plane("A", smooth(1.0), [0.0; 3], [0.0, 1.0, 0.0]);
+        let wedge = wedge.plane("B", smooth(1.0), [0.0; 3], [sin, -cos, 0.0]);
+        let start = Point3::new((0.5 * angle).cos(), (0.5 * angle).sin(), 0.0);
+        // From half of the angle to the direction of the velocity; no multiple of an angle is near one of these directions.
+        for heading in [166.9257, 121.3333, 93.4567] {
+            let (y, x) = f64::to_radians(heading).sin_cos();
+            let run = wedge.clone().ball(start, [x, y, 0.0], 0.0).run();
+            assert_eq!(run.impacts().len() as f64, (heading / degrees).floor(), "{degrees} degrees, {heading}");
+            assert!(run.impacts().len() as f64 <= (180.0 / degrees).ceil());
+            // No speed is won or lost, but for what each hit rounds.
+            let v = run.outcome.state.velocity;
+            assert!((v.norm() - 1.0).abs() <= 8.0 * U * (1.0 + run.impacts().len() as f64), "{degrees}: {v}");
+        }
+    }
+}

@@ -4,6 +4,7 @@ use carom_dynamics::effects::drag::Drag;
 use carom_dynamics::scene::Method;
 use carom_tests::oracle::{Table, U, Worst};
 use carom_tests::stage::{Stage, smooth};
+use nalgebra::Point3;
 
 const TOLERANCES: [f64; 9] = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12];
 
@@ -92,16 +93,23 @@ fn r08_bounces_in_quadratic_drag() {
         let [g, vt, h0, e] = group[0].numbers(["g", "v_terminal", "h0", "e"]);
         let last = group[group.len() - 1].number("t_apex");
         // At the terminal speed drag is g: the drag length is vt^2 / g.
-        let stage = Stage::new(1.01 * last).down(g).drag(drag_of_length(vt * vt / g, r)).floor(smooth(e));
-        let stage = stage.thing([0.0, 0.0, h0 + r], [0.0; 3], r, Some(1.0)).rest_length(1e-20);
-        for tolerance in TOLERANCES {
+        let air = Stage::new(1.01 * last).down(g).drag(drag_of_length(vt * vt / g, r)).rest_length(1e-20);
+        let air = air.thing([0.0, 0.0, h0 + r], [0.0; 3], r, Some(1.0));
+        // On an edge and on a tip, a ball from straight above does what it does on a floor.
+        let of_triangle = |corners: [[f64; 3]; 3]| {
+            air.clone().mesh("triangle", smooth(e), corners.map(Point3::from).to_vec(), vec![[0, 1, 2]])
+        };
+        let edge = of_triangle([[0.0, -4.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, -4.0]]);
+        let tip = of_triangle([[0.0, 0.0, 0.0], [1.0, 0.5, -4.0], [-1.0, 0.5, -4.0]]);
+        let grounds = [(air.clone().floor(smooth(e)), "floor"), (edge, "edge"), (tip, "tip")];
+        for ((stage, ground), tolerance) in grounds.iter().flat_map(|ground| TOLERANCES.map(|t| (ground, t))) {
             let run = stage.clone().method(adaptive(tolerance)).run();
             let impacts = run.impacts();
             for (row, impact) in group.iter().zip(&impacts) {
                 let [n, t, v_in, v_out] = row.numbers(["n", "t_impact", "v_in", "v_out"]);
                 let [height, t_apex] = row.numbers(["apex_height", "t_apex"]);
                 let bound = n * (OF_TOLERANCE * tolerance + ROUNDING);
-                let place = || format!("vt = {vt}, h0 = {h0}, n = {n}, tolerance {tolerance:e}");
+                let place = || format!("{ground}, vt = {vt}, h0 = {h0}, n = {n}, tolerance {tolerance:e}");
                 times.see(impact.time, t, bound * t, place);
                 // Where a step ends within a hop, the centre's height is rounded: r u high, worth r u g / v of speed.
                 let centre = 4.0 * U * r * g / v_in;

@@ -144,10 +144,10 @@ fn r20_sliding_across_a_slope_turns_downhill() {
             let [t, down, across, v_down, v_across] = row.numbers(["t", "s_down", "q_across", "v_down", "v_across"]);
             let (x, v) = (run.at(t).coords, run.velocity_at(t));
             let scale = down.hypot(across);
-            places.see(x.dot(&slope.down), down, 1e-9 * scale, || place(t));
-            places.see(x.dot(&slope.across), across, 1e-9 * scale, || place(t));
-            speeds.see(v.dot(&slope.down), v_down, 1e-9 * v0, || place(t));
-            speeds.see(v.dot(&slope.across), v_across, 1e-9 * v0, || place(t));
+            places.see(x.dot(&slope.down), down, 1e-11 * scale, || place(t));
+            places.see(x.dot(&slope.across), across, 1e-11 * scale, || place(t));
+            speeds.see(v.dot(&slope.down), v_down, 1e-11 * v0, || place(t));
+            speeds.see(v.dot(&slope.across), v_across, 1e-11 * v0, || place(t));
         }
         match group[0].text("t_stop") {
             "never" | "none" | "inf" => assert_eq!(run.events(EventKind::Rest), []),
@@ -155,9 +155,28 @@ fn r20_sliding_across_a_slope_turns_downhill() {
                 let right = carom_tests::data::number(t_stop);
                 let rest = run.events(EventKind::Rest);
                 assert_eq!(rest.len(), 1, "{}: {:?}", place(right), run.kinds());
-                stops.see(rest[0].time, right, 1e-9 * right, || place(right));
+                stops.see(rest[0].time, right, 1e-11 * right, || place(right));
             }
         }
     }
     Worst::settle_all([places, speeds, stops]);
+}
+
+#[test]
+fn h27_where_friction_is_the_slope_itself_what_slides_across_it_ends_up_straight_down() {
+    // mu = tan(theta) to the bit, on the slope of 3, 4 and 5: speed and speed downhill are v0 (1 + cos psi0) together, for ever, so that in the end
+    // each is half of that.
+    let (normal, down, across) = (Vector3::new(0.6, 0.0, 0.8), Vector3::new(0.8, 0.0, -0.6), Vector3::y());
+    for degrees in [30.0f64, 90.0, 120.0] {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let stage = Stage::new(200.0).down(10.0).plane("slope", rough(0.5, coulomb(0.75)), [0.0; 3], normal);
+        let run = stage.ball([0.0; 3], (down * cos + across * sin) * 2.0, 0.0).rest_length(LEAST_HOP).run();
+        let sum = 2.0 * (1.0 + cos);
+        for k in 0..=100 {
+            let v = run.velocity_at(2.0 * f64::from(k));
+            assert!((v.norm() + v.dot(&down) - sum).abs() <= 1e-9 * sum, "{degrees} degrees: {v} after {} s", 2 * k);
+        }
+        let end = run.outcome.state.velocity;
+        assert!((end - down * (0.5 * sum)).norm() <= 1e-9 * sum, "{degrees} degrees: {end}");
+    }
 }

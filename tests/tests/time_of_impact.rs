@@ -6,6 +6,7 @@ use carom_geometry::path::Path;
 use carom_geometry::rounding::{UNIT_ROUNDOFF, contact_doubt};
 use carom_geometry::triangle::Feature;
 use carom_tests::data::{csv, number};
+use carom_tests::random::Random;
 use nalgebra::{Point3, Vector3};
 
 #[test]
@@ -34,6 +35,29 @@ fn h04_roots_of_parabolas_are_good_to_4_roundoffs() {
         rows.len() - none
     );
     assert_eq!(none, 2);
+}
+
+#[test]
+fn h12_powers_of_two_of_length_and_time_change_no_bit_of_a_root() {
+    let mut random = Random::new(12);
+    let (mut hits, mut falling) = (0, 0);
+    for _ in 0..100_000 {
+        let mut number = |low, high| random.octave(low, high) * [1.0, -1.0][random.below(2)];
+        let (c, b, a) = (number(-20, 20), number(-20, 20), number(-20, 20));
+        let (k, m) = (random.below(601) as i32 - 300, random.below(201) as i32 - 100);
+        let entry = |c: f64, b: f64, a: f64| Clearance::new([c, b, a, 0.0, 0.0]).first_entry(0.0, f64::INFINITY);
+        let [length, rate, bend] = [k, k - m, k - 2 * m].map(|k| 2f64.powi(k));
+        match (entry(c, b, a), entry(c * length, b * rate, a * bend)) {
+            (Entry::Never, Entry::Never) => {}
+            (Entry::At { f, rate: at }, Entry::At { f: scaled, rate: scaled_at }) => {
+                assert_eq!((f * 2f64.powi(m), at * rate), (scaled, scaled_at), "{c:e} {b:e} {a:e} by 2^{k}, 2^{m}");
+                hits += 1;
+                falling += u32::from(c > 0.0 && b > 0.0);
+            }
+            (plain, scaled) => panic!("{plain:?}, but {scaled:?}: {c:e} {b:e} {a:e} by 2^{k}, 2^{m}"),
+        }
+    }
+    assert!(hits > 50_000 && falling > 10_000, "{hits} hits, {falling} of them after a rise");
 }
 
 #[test]

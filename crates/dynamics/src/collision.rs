@@ -18,7 +18,8 @@ use carom_geometry::rounding::contact_doubt;
 use carom_geometry::site::{Bend, RegionBound, Site};
 use carom_geometry::sweep::{Surroundings, Work};
 use nalgebra::{Point3, Vector3};
-use returning::leaves_region;
+use returning::{Departure, leaves_region};
+use std::cell::Cell;
 use std::cmp::Ordering;
 
 /// The earliest collision of a step.
@@ -153,21 +154,24 @@ impl<'a> Obstacles<'a> {
             }
         }
         for ((surface, mesh), around) in self.plan.meshes.iter().zip(&mut self.around) {
-            let here =
-                |r: &Return| r.hold.face.filter(|_| r.free.as_ref().is_some_and(|free| free.surface == *surface));
-            let holds: PerContact<Hold> = returns.iter().map(|r| Hold { face: here(r), ..r.hold }).collect();
+            let mut holds = PerContact::<Hold>::new();
+            for (contact, back) in contacts.iter().zip(returns) {
+                let face = back.hold.face.filter(|_| contact.surface == *surface);
+                holds.push(Hold { face, ..back.hold });
+            }
             let ball = MovingBall { path: &step.path, radius: self.mesh_radius, holds: &holds };
             let to = earliest.map_or(step.to, |hit| hit.f);
             let mut work = Work::default();
+            let asked = Cell::new(0);
             let free_until = |face: u32| {
-                returns
-                    .iter()
-                    .filter_map(|r| r.free.as_ref())
-                    .map(|free| free.until(*surface, mesh, face))
-                    .fold(0.0, f64::max)
+                let on_it = contacts.iter().zip(returns).filter(|(contact, _)| contact.surface == *surface);
+                let departures =
+                    on_it.map(|(contact, back)| Departure { step, contact, back, mesh, radius: ball.radius });
+                departures.map(|departure| departure.free_until(face, &asked)).fold(0.0, f64::max)
             };
             let found = mesh.first_contact_around(&ball, to, free_until, around, &mut work);
             counters.add(&work);
+            counters.clearances += asked.get();
             if let Some(found) = found
                 && earlier(found.f, *surface, &earliest)
             {
@@ -221,12 +225,18 @@ impl<'a> Obstacles<'a> {
             }
             counters.add(&work);
         }
-        if all.len() == 1 {
-            return all;
+        if all.len() > 1 {
+            self.merge(&mut all, tolerance);
         }
-        all.sort_by(|a, b| a.rate.total_cmp(&b.rate).then_with(|| self.order(a, b)));
-        let mut contacts = Contacts::new();
-        for c in all {
+        all
+    }
+
+    /// Of contacts whose normals are one, that which closes fastest; then in order.
+    fn merge(&self, contacts: &mut Contacts, tolerance: f64) {
+        contacts.sort_by(|a, b| a.rate.total_cmp(&b.rate).then_with(|| self.order(a, b)));
+        let mut kept = 0;
+        for i in 0..contacts.len() {
+            let c = contacts[i];
             let same = |kept: &Contact| {
                 // The normals of planes and faces do not depend on where rounding put the ball: two of them are two.
                 let exact = self.bend(kept) == Bend::Flat && self.bend(&c) == Bend::Flat;
@@ -234,12 +244,13 @@ impl<'a> Obstacles<'a> {
                 let angle = merge_angle_squared(tolerance, radius);
                 (kept.normal - c.normal).norm_squared() <= angle
             };
-            if contacts.len() < MAX_CONTACTS && !contacts.iter().any(same) {
-                contacts.push(c);
+            if kept < MAX_CONTACTS && !contacts[..kept].iter().any(same) {
+                contacts[kept] = c;
+                kept += 1;
             }
         }
+        contacts.truncate(kept);
         contacts.sort_by(|a, b| self.order(a, b));
-        contacts
     }
 
     /// The order of contacts: by what they are and not by how they are numbered, so that the order of surfaces and faces does not matter.

@@ -83,14 +83,20 @@ pub struct Event {
     pub velocity_in: Vector3<f64>,
     /// Velocity just after, in m/s.
     pub velocity: Vector3<f64>,
-    /// How far `time` and `position` may be off, of an impact and of what happens with it; none where sliding or a guard ends in something else.
+    /// How far `time` and `position` may be off, wherever they are those of a solution: of an impact, of a contact that ends at an edge, of sliding that
+    /// friction ends on a straight line, of slipping that becomes rolling there, of hops that have come to their sum, and of what happens with one of
+    /// them; and at the start.
+    ///
+    /// None of what was not solved for: a rest, a slide, a roll or a leave at the end of an integrated step, by which a threshold was passed or the
+    /// surface no longer pressed; what a path closes in on where the ball does not; and what a guard ends.
     pub bound: Option<Bound>,
     /// Angular velocity just after, in rad/s, if the scene calls for it.
     pub spin: Option<Vector3<f64>>,
 }
 
-/// How far a computed impact may be from the exact one of the path that led to it, with all its numbers from the start of that stretch taken as
-/// exact: what rounding does in one flight. What a method of integration does, and what rounding has done before, is not in it.
+/// How far a computed event may be from the exact one of the path that led to it, with all its numbers from the start of that stretch taken as
+/// exact: what rounding does in one flight or one stretch of sliding. What a method of integration does, and what rounding has done before, is not in
+/// it; nor what the model does that sums up the last hops.
 ///
 /// At a graze, where the clearance turns within its rounding, the exact path may miss what the computed one touches; the bound is then the time in
 /// which the clearance changes by more than that.

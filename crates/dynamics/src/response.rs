@@ -11,56 +11,64 @@ use crate::effects::friction::Friction;
 use crate::support::project;
 use crate::surface::Material;
 use crate::tolerance::rate_rounding;
+use carom_geometry::bounds::amax;
 use nalgebra::Vector3;
 
 /// Repeats of the response before restitution is given up for what is left (H19: acute normals may close again).
 const MAX_REPEATS: u32 = 32;
 
 /// The velocity after an impact with velocity `v` (m/s), of which at least one of `contacts` is closing; leaves in each contact the
-/// rate with which it separates. `materials[i]` is what contact i is made of.
-pub fn respond(
+/// rate with which it separates. `material` is what a contact is made of.
+pub fn respond<'m>(
     v: Vector3<f64>,
     contacts: &mut [Contact],
-    materials: &[Material],
+    material: impl Fn(&Contact) -> &'m Material,
     counters: &mut Counters,
 ) -> Vector3<f64> {
-    let after = match contacts.iter().filter(|c| c.rate < 0.0).count() {
-        1 => respond_to_one(v, contacts, materials, counters),
+    let mut closing = contacts.iter().enumerate().filter(|(_, c)| c.rate < 0.0);
+    let after = match (closing.next(), closing.next()) {
+        (Some((hit, contact)), None) => {
+            let material = material(contact);
+            respond_to_one(v, contacts, hit, material, counters)
+        }
         _ => None,
     };
-    after.unwrap_or_else(|| respond_to_all(v, contacts, materials, counters))
+    after.unwrap_or_else(|| {
+        let materials: PerContact<Material> = contacts.iter().map(|c| *material(c)).collect();
+        respond_to_all(v, contacts, &materials, counters)
+    })
 }
 
-/// The chapter's response to the only closing contact; none if it drives the ball into another.
+/// The chapter's response to the only closing contact, which is number `hit`; none if it drives the ball into another.
 fn respond_to_one(
     v: Vector3<f64>,
     contacts: &mut [Contact],
-    materials: &[Material],
+    hit: usize,
+    material: &Material,
     counters: &mut Counters,
 ) -> Option<Vector3<f64>> {
-    let hit = contacts.iter().position(|c| c.rate < 0.0)?;
     let (n, closing) = (contacts[hit].normal, -contacts[hit].rate);
-    let c_r = materials[hit].restitution.at(closing);
+    let c_r = material.restitution.at(closing);
     // A rounded unit normal is off by the same u at each of a million bounces: divided by its square, it is not.
     let square = n.norm_squared();
     let v_t = v - n * (n.dot(&v) / square);
-    let rebound = materials[hit].restitution.rebound(closing);
-    let friction = &materials[hit].friction;
+    let rebound = c_r * closing;
+    let friction = &material.friction;
     let mut after = slowed(friction, v_t, closing, c_r, counters) + n * (rebound / square);
     // Rounding must not gain energy; nor lose it where nothing does.
     // In units of the largest component: squares of small speeds vanish.
-    let unit = v.amax();
+    let unit = amax(&v);
     let (had, has) = ((v / unit).norm_squared(), (after / unit).norm_squared());
     if has > had || (c_r == 1.0 && *friction == Friction::None) {
         after *= (had / has).sqrt();
     }
-    let rates = |i: usize, c: &Contact| if i == hit { rebound } else { changed_rate(c, &v, &after) };
-    if contacts.iter().enumerate().any(|(i, c)| rates(i, c) < 0.0) {
+    let drives = |(i, c): (usize, &Contact)| i != hit && changed_rate(c, &v, &after) < 0.0;
+    if contacts.iter().enumerate().any(drives) {
         return None;
     }
     counters.restitution += 1;
     for (i, contact) in contacts.iter_mut().enumerate() {
-        contact.rate = rates(i, contact);
+        contact.rate = if i == hit { rebound } else { changed_rate(contact, &v, &after) };
     }
     Some(after)
 }
@@ -169,7 +177,7 @@ mod tests {
 
     fn answer(v: Vector3<f64>, normals: &[Vector3<f64>], m: Material) -> Vector3<f64> {
         let mut touched = contacts(&v, normals);
-        respond(v, &mut touched, &vec![m; normals.len()], &mut Counters::default())
+        respond(v, &mut touched, |_| &m, &mut Counters::default())
     }
 
     #[test]
@@ -214,7 +222,7 @@ mod tests {
             let normals = [Vector3::z(), Vector3::new(angle.sin(), 0.0, angle.cos())];
             let v = Vector3::new(-1.0, 0.3, -1.0);
             let mut touched = contacts(&v, &normals);
-            let after = respond(v, &mut touched, &[m, m], &mut Counters::default());
+            let after = respond(v, &mut touched, |_| &m, &mut Counters::default());
             assert!(after.norm() <= v.norm() * (1.0 + 4.0 * UNIT_ROUNDOFF));
             assert!(touched.iter().all(|c| c.rate >= 0.0));
             assert!(normals.iter().all(|n| n.dot(&after) >= -1e-14), "{k}");
@@ -239,5 +247,83 @@ mod tests {
             assert!(!of_two(a, b, least - 0.01) && !of_two(a, b, -least - 0.01), "{a} and {b}");
         }
         assert!(!of_two(1.0, 1.0, 1.0), "nothing is lost between two perfect walls");
+    }
+
+    #[test]
+    fn a_contact_that_is_not_hit_changes_no_bit_of_the_answer() {
+        let (n, idle) = (Vector3::new(0.6, 0.0, 0.8), Vector3::y());
+        for k in 1..50 {
+            let v = Vector3::new(0.1 * f64::from(k), 0.0, -0.7);
+            // Along the idle one, and off it.
+            for v in [v, v + idle * 0.3] {
+                for (c_r, friction) in [(0.3, Friction::coulomb(0.2).unwrap()), (1.0, Friction::None)] {
+                    let m = material(c_r, friction);
+                    let of = |normals: &[Vector3<f64>]| {
+                        let (mut touched, mut counters) = (contacts(&v, normals), Counters::default());
+                        let after = respond(v, &mut touched, |_| &m, &mut counters);
+                        (after, counters, touched)
+                    };
+                    let (alone, counters, touched) = of(&[n]);
+                    let frictions = u64::from(friction != Friction::None);
+                    let closes = n.dot(&v) < 0.0;
+                    if !closes {
+                        continue;
+                    }
+                    assert_eq!((counters.restitution, counters.friction), (1, frictions));
+                    for (normals, hit) in [([n, idle], 0), ([idle, n], 1)] {
+                        let (after, too, beside) = of(&normals);
+                        assert_eq!((after, too, beside[hit].rate), (alone, counters, touched[0].rate), "{v} at {n}");
+                        // Where friction slows what leaves the idle one, that is left more slowly.
+                        assert!((beside[1 - hit].rate - idle.dot(&after)).abs() <= 2.0 * rate_rounding(v.norm()));
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_normal_that_is_not_of_unit_length_reflects_none_the_less() {
+        let n = Vector3::new(0.6, 0.0, 0.8);
+        let v = Vector3::new(0.3, -0.2, -0.9);
+        for c_r in [0.0, 0.5, 1.0] {
+            let exact = v - n * ((1.0 + c_r) * n.dot(&v));
+            for length in [1.0 - 0.5f64.powi(8), 1.0, 1.0 + 0.5f64.powi(8)] {
+                let after = answer(v, &[n * length], material(c_r, Friction::None));
+                assert!((after - exact).norm() <= 8.0 * UNIT_ROUNDOFF, "{c_r}, {length}: {after}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_collapses_keeps_what_no_wall_can_take() {
+        // Between walls that are open by arccos 0.96, with c_r = 1/4 (from 0.8 on it collapses), and by arccos 0.6.
+        let wedge = |cos: f64| [Vector3::z(), Vector3::new((1.0 - cos * cos).sqrt(), 0.0, -cos)];
+        let v = Vector3::new(-1.0, 0.3, -0.125);
+        let m = material(0.25, Friction::None);
+        assert!((answer(v, &wedge(0.96), m) - Vector3::y() * 0.3).norm() <= 8.0 * UNIT_ROUNDOFF);
+        assert!((answer(v, &wedge(0.6), m) - Vector3::y() * 0.3).norm() > 0.1);
+        // And by the other way, after impacts without end: nothing of what closes, all of what leaves.
+        let [x, y, z] = [Vector3::x(), Vector3::y(), Vector3::z()];
+        let mut touched = contacts(&v, &[x, y, z]);
+        assert_eq!(collapse(v, &mut touched), y * 0.3);
+        assert_eq!(touched.iter().map(|c| c.rate).collect::<Vec<_>>(), [0.0, 0.3, 0.0]);
+    }
+
+    #[test]
+    fn the_most_acute_of_elastic_corners_gain_no_energy() {
+        let m = material(1.0, Friction::None);
+        for k in 4..40 {
+            // Walls at an angle of 0.7 2^-k: what they push with is as much larger than what they stop, and its rounding with it.
+            let sin = 0.7 * 0.5f64.powi(k);
+            let normals = [Vector3::z(), Vector3::new(sin, 0.0, -(1.0 - sin * sin).sqrt())];
+            for j in 1..20 {
+                let v = Vector3::new(-1.0, 0.3, -0.05 * f64::from(j) * sin);
+                let mut touched = contacts(&v, &normals);
+                assert!(touched.iter().all(|c| c.rate < 0.0));
+                let after = respond(v, &mut touched, |_| &m, &mut Counters::default());
+                assert!(after.norm() <= v.norm() * (1.0 + 4.0 * UNIT_ROUNDOFF), "{k}, {j}: {after}");
+                assert!(touched.iter().all(|c| c.rate >= 0.0));
+            }
+        }
     }
 }

@@ -9,11 +9,13 @@ use carom_geometry::bounds::Aabb;
 use nalgebra::Point3;
 use rayon::prelude::*;
 use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::sync_channel;
 use thiserror::Error;
 
 /// Balls simulated before their results are handed on, for each thread: what bounds the memory. Among as many there are neighbours,
 /// which meet the same part of a mesh while it is in the cache.
-const BALLS_IN_FLIGHT: usize = 512;
+const BALLS_IN_FLIGHT: usize = 2048;
 
 /// Balls that a thread takes at a time: enough to forget what taking them costs, few enough that no thread waits long for another.
 const BALLS_AT_A_TIME: usize = 8;
@@ -30,7 +32,7 @@ pub struct ThreadsError {
 
 /// Simulates every ball of `plan` on `threads` threads (all cores if none). `make` gives the observer of a ball by its
 /// index; `sink` takes each back with the ball's outcome, on the calling thread and in the order of the balls, and may break
-/// off. No more than some hundred balls a thread are in memory at once.
+/// off; the threads go on with the next balls meanwhile. No more than some thousand balls a thread are in memory at once.
 ///
 /// ```
 /// # use carom_dynamics::body::Ball;
@@ -74,24 +76,38 @@ pub fn run_balls<O: Observer + Send>(
         .build()
         .map_err(|e| ThreadsError { threads: wanted, reason: e.to_string() })?;
     let chunk = BALLS_IN_FLIGHT * pool.current_num_threads();
-    for (k, balls) in plan.balls().chunks(chunk).enumerate() {
-        let first = k * chunk;
+    let stopped = AtomicBool::new(false);
+    let all_of = |first: usize, balls: &[Ball]| {
         let order = neighbours_together(balls);
-        let mut results: Vec<(usize, O, Outcome)> = pool.install(|| {
-            let one = |&i: &usize| {
-                let mut observer = make(first + i);
-                let outcome = simulate(plan, &balls[i], &mut observer);
-                (first + i, observer, outcome)
-            };
-            order.par_chunks(BALLS_AT_A_TIME).flat_map_iter(|some| some.iter().map(one)).collect()
-        });
+        let one = |&i: &usize| {
+            let mut observer = make(first + i);
+            let outcome = simulate(plan, &balls[i], &mut observer);
+            (first + i, observer, outcome)
+        };
+        let still = |_: &&usize| !stopped.load(Ordering::Relaxed);
+        let in_order = order.par_chunks(BALLS_AT_A_TIME);
+        let mut results: Vec<(usize, O, Outcome)> =
+            pool.install(|| in_order.flat_map_iter(|some| some.iter().filter(still).map(one)).collect());
         results.sort_unstable_by_key(|(i, ..)| *i);
-        for (i, observer, outcome) in results {
+        results
+    };
+    std::thread::scope(|scope| {
+        // One chunk is handed on while the next is made, and no more.
+        let (hand_on, made) = sync_channel(0);
+        scope.spawn(move || {
+            for (k, balls) in plan.balls().chunks(chunk).enumerate() {
+                if hand_on.send(all_of(k * chunk, balls)).is_err() {
+                    return;
+                }
+            }
+        });
+        for (i, observer, outcome) in made.into_iter().flatten() {
             if sink(i, observer, outcome).is_break() {
-                return Ok(());
+                stopped.store(true, Ordering::Relaxed);
+                return;
             }
         }
-    }
+    });
     Ok(())
 }
 

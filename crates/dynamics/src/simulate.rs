@@ -233,6 +233,7 @@ impl<O: Observer> Walk<'_, O> {
     /// Ends the simulation of this ball by a guard, and says so where it is in contact.
     fn give_up(&mut self, ending: Ending, kind: EventKind) {
         self.ending = Some(ending);
+        self.bound = None;
         if let Some(contact) = self.contacts.first().copied() {
             self.tell(kind, &contact, self.state.velocity);
         }

@@ -117,6 +117,12 @@ pub fn impact_time_bound(doubt: f64, closing: f64, bend: f64) -> f64 {
     if closing * closing >= 8.0 * bend * doubt { 2.0 * doubt / closing } else { 8.0 * (doubt / bend).sqrt() }
 }
 
+/// How far the end of a stretch of sliding may be off in s, that ends after `seconds` as a speed over an acceleration, both of them lengths of vectors
+/// or parts along one: 16 units.
+pub fn stretch_bound(seconds: f64) -> f64 {
+    16.0 * UNIT_ROUNDOFF * seconds
+}
+
 /// How far the sum of the times of a ball's flights may be off at time `now` (s), by rounding: 8 units.
 pub fn clock_bound(now: f64) -> f64 {
     8.0 * UNIT_ROUNDOFF * now

@@ -38,8 +38,15 @@ impl Path {
 
     /// The parabola start + linear f + quadratic f^2: for velocity v, acceleration a and duration h, `linear` is v h and
     /// `quadratic` a h^2 / 2.
+    #[inline]
     pub fn parabola(start: Point3<f64>, linear: Vector3<f64>, quadratic: Vector3<f64>) -> Self {
-        Self::from_terms(start, &[linear, quadratic])
+        let zero = Vector3::zeros();
+        Self {
+            start,
+            terms: [linear, quadratic, zero, zero],
+            sizes: [amax(&linear), amax(&quadratic), 0.0, 0.0],
+            degree: 2,
+        }
     }
 
     /// The path with up to four Taylor terms at its start; terms beyond the fourth are not taken.
@@ -84,11 +91,24 @@ impl Path {
 
     /// dp/df at `f`.
     pub fn derivative(&self, f: f64) -> Vector3<f64> {
+        if self.degree <= 2 {
+            let [linear, quadratic, ..] = self.terms;
+            return quadratic * 2.0 * f + linear;
+        }
         let mut sum = Vector3::zeros();
         for (k, term) in self.terms().iter().enumerate().rev() {
             sum = sum * f + term * (k + 1) as f64;
         }
         sum
+    }
+
+    /// d^2p/df^2 at `f`.
+    pub fn second_derivative(&self, f: f64) -> Vector3<f64> {
+        let [_, quadratic, cubic, quartic] = self.terms;
+        if self.degree <= 2 {
+            return quadratic * 2.0;
+        }
+        (quartic * 12.0 * f + cubic * 6.0) * f + quadratic * 2.0
     }
 
     /// The distance along `normal` that is left at f when it is `gap` at f = 0: one dot product for each term.
@@ -180,6 +200,11 @@ mod tests {
         let (path, f, step) = (quartic(), 0.375, 2f64.powi(-20));
         let slope = (path.displacement(f + step) - path.displacement(f - step)) / (2.0 * step);
         assert!((slope - path.derivative(f)).amax() < 1e-9);
+        let bend = (path.derivative(f + step) - path.derivative(f - step)) / (2.0 * step);
+        assert!((bend - path.second_derivative(f)).amax() < 1e-9);
+        let parabola = Path::parabola(Point3::origin(), Vector3::x(), Vector3::new(0.0, 3.0, -5.0));
+        assert_eq!(parabola.derivative(0.5), Vector3::new(1.0, 3.0, -5.0));
+        assert_eq!(parabola.second_derivative(0.5), Vector3::new(0.0, 6.0, -10.0));
     }
 
     #[test]

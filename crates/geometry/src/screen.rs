@@ -1,14 +1,14 @@
-//! Cheap certificates that a stretch of a path stays off a triangle: the plane of the face, and those through its edges.
+//! Cheap certificates that a stretch of a path stays off a triangle: the plane of the face, and one that faces the path where it is near.
 //!
-//! Any plane with the triangle behind it will do. These four need no closest point, no root and no quotient, and are enough for most
-//! triangles that a tree of boxes lets through.
+//! Any plane with the triangle behind it will do, so the second may be found in a hurry: by plain arithmetic, and without a root. The two are
+//! enough for most triangles that a tree of boxes lets through.
 
 use crate::bounds::{largest, least};
 use crate::path::Path;
 use nalgebra::Vector3;
 
 /// A stretch of a ball's path, seen from the start of the path.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Stretch {
     from: Vector3<f64>,
     to: Vector3<f64>,
@@ -50,33 +50,25 @@ impl Stretch {
         largest(above, below) - self.further > self.reach
     }
 
-    /// Whether one of the planes through the edges tells it.
+    /// Whether the plane tells it that faces the stretch from the triangle's point that is nearest to it, or nearly so.
     #[inline]
-    pub(crate) fn is_off_edges(&self, corners: &[Vector3<f64>; 3], normal: &Vector3<f64>) -> bool {
+    pub(crate) fn is_off_nearest(&self, corners: &[Vector3<f64>; 3]) -> bool {
         let [a, b, c] = corners;
-        self.is_beyond(a, b, c, normal) || self.is_beyond(b, c, a, normal) || self.is_beyond(c, a, b, normal)
-    }
-
-    /// Whether the ball stays on the side of the edge from `p` to `q` that the third corner is not on.
-    #[inline]
-    fn is_beyond(&self, p: &Vector3<f64>, q: &Vector3<f64>, opposite: &Vector3<f64>, normal: &Vector3<f64>) -> bool {
-        let across = (q - p).cross(normal);
-        let height = across.dot(p);
-        let (from, to) = (across.dot(&self.from) - height, across.dot(&self.to) - height);
-        // Seen along `across` or against it, whichever way the ball is: a normal that was declared need not go with the winding.
-        let side = if from > 0.0 && to > 0.0 {
-            1.0
-        } else if from < 0.0 && to < 0.0 {
-            -1.0
+        // Where the chord passes the middle of the triangle.
+        let way = self.to - self.from;
+        let (length, along) = (way.norm_squared(), ((a + b + c) * (1.0 / 3.0) - self.from).dot(&way));
+        let near = if along <= 0.0 {
+            self.from
+        } else if along >= length {
+            self.to
         } else {
-            return false;
+            self.from + way * (along / length)
         };
-        if side * across.dot(&(opposite - p)) > 0.0 {
-            return false;
-        }
-        let distance = least(side * from, side * to) - largest(side * across.dot(&self.bend), 0.0);
-        // All of these in units of the length of `across`.
-        let reach = self.reach + self.further;
+        // Of any length: what it tells is measured in units of that.
+        let across = near - closest(corners, &near);
+        let highest = largest(largest(across.dot(a), across.dot(b)), across.dot(c));
+        let lowest = least(across.dot(&self.from), across.dot(&self.to)) - largest(across.dot(&self.bend), 0.0);
+        let (distance, reach) = (lowest - highest, self.reach + self.further);
         distance > 0.0 && distance * distance > reach * reach * across.norm_squared()
     }
 
@@ -102,6 +94,41 @@ impl Stretch {
     }
 }
 
+/// The point of the triangle closest to `x`, as well as plain arithmetic tells (Ericson, Real-Time Collision Detection, 2005, section 5.1.5); not a number
+/// for some triangles that have no area.
+#[inline]
+fn closest([a, b, c]: &[Vector3<f64>; 3], x: &Vector3<f64>) -> Vector3<f64> {
+    let (ab, ac, ax) = (b - a, c - a, x - a);
+    let (d1, d2) = (ab.dot(&ax), ac.dot(&ax));
+    if d1 <= 0.0 && d2 <= 0.0 {
+        return *a;
+    }
+    let bx = x - b;
+    let (d3, d4) = (ab.dot(&bx), ac.dot(&bx));
+    if d3 >= 0.0 && d4 <= d3 {
+        return *b;
+    }
+    let of_c = d1 * d4 - d3 * d2;
+    if of_c <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+        return a + ab * (d1 / (d1 - d3));
+    }
+    let cx = x - c;
+    let (d5, d6) = (ab.dot(&cx), ac.dot(&cx));
+    if d6 >= 0.0 && d5 <= d6 {
+        return *c;
+    }
+    let of_b = d5 * d2 - d1 * d6;
+    if of_b <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+        return a + ac * (d2 / (d2 - d6));
+    }
+    let of_a = d3 * d6 - d5 * d4;
+    if of_a <= 0.0 && d4 >= d3 && d5 >= d6 {
+        return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
+    }
+    let share = 1.0 / (of_a + of_b + of_c);
+    a + ab * (of_b * share) + ac * (of_c * share)
+}
+
 /// Whether all `corners` are farther than `reach` from the plane through the origin across `normal`, on one side of it.
 #[inline]
 pub(crate) fn is_off_plane(corners: &[Vector3<f64>; 3], normal: &Vector3<f64>, reach: f64) -> bool {
@@ -109,3 +136,6 @@ pub(crate) fn is_off_plane(corners: &[Vector3<f64>; 3], normal: &Vector3<f64>, r
     let (a, b, c) = (normal.dot(a), normal.dot(b), normal.dot(c));
     least(least(a, b), c) > reach || largest(largest(a, b), c) < -reach
 }
+
+#[cfg(test)]
+mod tests;

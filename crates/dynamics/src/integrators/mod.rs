@@ -106,7 +106,10 @@ impl Integrator {
 impl Step {
     /// Position and velocity at `f`.
     pub fn at(&self, f: f64) -> State {
-        let velocity = self.velocity.iter().rev().fold(Vector3::zeros(), |sum, v| sum * f + v);
+        let [v0, v1, v2, v3, v4] = self.velocity;
+        // The velocity has no terms beyond those of the path.
+        let further = if self.path.terms().len() <= 2 { v2 } else { (v4 * f + v3) * f + v2 };
+        let velocity = (further * f + v1) * f + v0;
         State { position: self.path.at(f), velocity }
     }
 
@@ -115,13 +118,11 @@ impl Step {
         self.at(self.to)
     }
 
-    /// Whether the path, the velocity and their reach over the whole step are finite.
+    /// Whether the path, the velocity and their reach over the whole step are finite: what is no number in any of their terms is none at the end.
     pub fn is_finite(&self) -> bool {
-        // A maximum passes over what is no number; a sum does not.
-        let size = |sum: f64, v: &Vector3<f64>| sum + v.x.abs() + v.y.abs() + v.z.abs();
-        let sum = size(self.path.reach(self.to) + self.seconds, &self.path.start().coords);
-        let terms = self.path.terms();
-        terms.iter().chain(&self.velocity[..=terms.len()]).fold(sum, size).is_finite()
+        let State { position, velocity } = self.end();
+        // A maximum passes over what is no number; a sum does not, not even of infinities that differ in sign.
+        (position.coords.sum() + velocity.sum() + self.path.reach(self.to) + self.seconds).is_finite()
     }
 
     /// The time from the start to `f`, in s.

@@ -3,7 +3,7 @@
 use super::Walk;
 use crate::body::State;
 use crate::collision::{Hit, Returns};
-use crate::contacts::{Contact, Contacts, MAX_CONTACTS, PerContact};
+use crate::contacts::{Contact, Contacts, MAX_CONTACTS};
 use crate::events::{Bound, Ending, EventKind, Motion};
 use crate::integrators::Step;
 use crate::observer::Observer;
@@ -14,6 +14,24 @@ use crate::tolerance::{
 use carom_geometry::bounds::amax;
 use carom_geometry::clearance::Entry;
 use nalgebra::Vector3;
+
+/// Which of the contacts of one instant close: a bit for each.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) struct Closing(u8);
+
+impl Closing {
+    fn add(&mut self, i: usize) {
+        self.0 |= 1 << i;
+    }
+
+    /// Whether contact number `i` does.
+    pub(super) fn has(self, i: usize) -> bool {
+        self.0 >> i & 1 == 1
+    }
+}
+
+// A bit for each contact.
+const _: () = assert!(MAX_CONTACTS <= u8::BITS as usize);
 
 impl<O: Observer> Walk<'_, O> {
     /// One pass of the slides' loop.
@@ -90,6 +108,7 @@ impl<O: Observer> Walk<'_, O> {
             self.correct(contact, tolerance);
         }
         self.contacts = contacts;
+        self.bound = Some(Bound { time: 0.0, position: tolerance });
         self.settle(None);
     }
 
@@ -107,38 +126,40 @@ impl<O: Observer> Walk<'_, O> {
         }
         self.bound = self.bound(step, &hit, tolerance, &contacts);
         let collapses = self.collapses(&mut contacts, tolerance);
-        let carried = |c: &Contact| before.iter().any(|b| b.lasting && b.surface == c.surface && b.site == c.site);
-        if let Some(contact) = contacts.iter().find(|c| c.rate < 0.0)
-            && step.exact
-        {
-            // The normal speed is known better from the clearance than from the velocity.
-            let n = contact.normal;
-            self.state.velocity += n * (contact.rate - n.dot(&self.state.velocity));
+        let carrier = before.iter().find(|b| b.lasting).copied();
+        let mut closing = Closing::default();
+        for (i, contact) in contacts.iter().enumerate().filter(|(_, c)| c.rate < 0.0) {
+            if closing == Closing::default() && step.exact {
+                // The normal speed is known better from the clearance than from the velocity.
+                let n = contact.normal;
+                self.state.velocity += n * (contact.rate - n.dot(&self.state.velocity));
+            }
+            closing.add(i);
         }
-        let closing: PerContact<bool> = contacts.iter().map(|c| c.rate < 0.0).collect();
-        if closing.contains(&true) {
-            let materials: PerContact<_> = contacts.iter().map(|c| self.surfaces[c.surface].material).collect();
+        let answered = closing != Closing::default();
+        if answered {
+            let surfaces = self.surfaces;
             let velocity_in = self.state.velocity;
             self.state.velocity = if collapses {
                 collapse(velocity_in, &mut contacts)
             } else {
-                respond(velocity_in, &mut contacts, &materials, &mut self.counters)
+                respond(velocity_in, &mut contacts, |c| &surfaces[c.surface].material, &mut self.counters)
             };
             if self.spins && !collapses {
-                self.grip(velocity_in, &mut contacts, &closing, &materials);
+                self.grip(velocity_in, &mut contacts, closing);
             }
             self.counters.impacts += 1;
             self.halvings = 0;
-            for (contact, _) in contacts.iter().zip(&closing).filter(|(_, closing)| **closing) {
+            for (_, contact) in contacts.iter().enumerate().filter(|(i, _)| closing.has(*i)) {
                 self.tell(EventKind::Impact, contact, velocity_in);
             }
         }
-        for contact in &mut contacts {
-            contact.lasting = carried(contact) && contact.rate == 0.0;
+        if carrier.is_some() {
+            let carried = |c: &Contact| before.iter().any(|b| b.lasting && b.surface == c.surface && b.site == c.site);
+            contacts.iter_mut().for_each(|c| c.lasting = carried(c) && c.rate == 0.0);
         }
         self.contacts = contacts;
-        let answered = closing.contains(&true);
-        let carried = self.settle(before.iter().find(|b| b.lasting).copied());
+        let carried = self.settle(carrier);
         if !answered && !carried && (hit.f == 0.0 || !step.exact) {
             // The path closes where the ball does not: the hop is too short for this step.
             self.halvings += 1;
@@ -150,20 +171,21 @@ impl<O: Observer> Walk<'_, O> {
     fn bound(&self, step: &Step, hit: &Hit, tolerance: f64, contacts: &[Contact]) -> Option<Bound> {
         let doubt = tolerance.max(touch_distance(self.plan.farthest, step.path.reach(hit.f)));
         let velocity = step.path.derivative(hit.f) / step.seconds;
-        let mut acceleration = Vector3::zeros();
-        for (k, term) in step.path.terms().iter().enumerate().skip(1).rev() {
-            acceleration = acceleration * hit.f + term * ((k + 1) * k) as f64;
-        }
-        acceleration /= step.seconds * step.seconds;
+        let acceleration = step.path.second_derivative(hit.f) / (step.seconds * step.seconds);
         let time = |c: &Contact| {
             let across = self.obstacles.bend(c).across(&velocity).norm_squared() / self.obstacles.radius_at(c);
             let bend = c.normal.dot(&acceleration).abs() + if across > 0.0 { across } else { 0.0 };
             impact_time_bound(doubt, -c.rate, bend)
         };
         let closing = contacts.iter().filter(|c| c.rate < 0.0 && c.surface == hit.surface);
+        Some(self.bound_of(&velocity, closing.map(time).reduce(f64::max)?, doubt))
+    }
+
+    /// What happens now while the ball moves with `velocity`, if its time is known to `seconds` and its place, at any time, to `doubt` (m).
+    pub(super) fn bound_of(&self, velocity: &Vector3<f64>, seconds: f64, doubt: f64) -> Bound {
         let now = self.clock.now();
-        let time = closing.map(time).reduce(f64::max)?.min(now) + clock_bound(now);
-        Some(Bound { time, position: doubt + velocity.norm() * time })
+        let time = seconds.min(now) + clock_bound(now);
+        Bound { time, position: doubt + velocity.norm() * time }
     }
 
     /// Whether contacts that lose energy have answered each other without time passing for so long that there is no end to it; then

@@ -4,13 +4,15 @@ use super::Walk;
 use crate::body::State;
 use crate::collision::Hit;
 use crate::contacts::{Contact, Contacts, PerContact};
-use crate::events::{EventKind, Motion};
+use crate::events::{Bound, EventKind, Motion};
 use crate::integrators::{Step, exact};
 use crate::observer::Observer;
 use crate::response::changed_rate;
 use crate::sliding::{Balance, Carrier, Slide, is_lifted, slide, tangential};
 use crate::support::along;
-use crate::tolerance::{RestThresholds, SLIDING_TOLERANCE, parallel, rate_rounding};
+use crate::tolerance::{
+    RestThresholds, SLIDING_TOLERANCE, impact_time_bound, parallel, rate_rounding, stretch_bound, touch_distance,
+};
 use carom_geometry::site::{Bend, RegionBound, Site};
 use nalgebra::Vector3;
 
@@ -160,6 +162,7 @@ impl<O: Observer> Walk<'_, O> {
         let to = hit.map(|hit| hit.f).or(exit.map(|(f, ..)| f)).unwrap_or(step.to);
         let whole = hit.is_none() && exit.is_none() && off.is_none() && !stops && step.time(step.to) >= remaining;
         self.travel(&step, to, motion, whole.then_some(self.plan.duration));
+        self.bound = self.bound_of_slide(&step, to, exit.as_ref().filter(|_| hit.is_none()).map(|(.., bound)| bound));
         if let Some(settling) = &mut self.settling {
             settling.seconds -= step.time(to);
         }
@@ -190,10 +193,28 @@ impl<O: Observer> Walk<'_, O> {
                     self.end_settling();
                 }
             }
-            (None, None) if off.is_some() => self.set_flying(carriers.first().map(|c| c.contact)),
+            (None, None) if off.is_some() => self.set_flying(self.contacts.iter().find(|c| c.lasting).copied()),
             (None, None) if stops => self.state.velocity = Vector3::zeros(),
             (None, None) => {}
         }
+    }
+
+    /// How far the end of a stretch of `step` to `to` may be off: where it leaves a place by `exit`, or where what it does has come to its end in a
+    /// time that is known as a quotient. None where it is the end of an integrated step, at which a threshold may be passed, or of an integrated lift.
+    fn bound_of_slide(&self, step: &Step, to: f64, exit: Option<&RegionBound>) -> Option<Bound> {
+        let doubt =
+            self.touch_tolerance(step.path.reach(to)).max(touch_distance(self.plan.farthest, step.path.reach(to)));
+        let velocity = step.path.derivative(to) / step.seconds;
+        let seconds = match exit {
+            Some(bound) => {
+                let acceleration = step.path.second_derivative(to) / (step.seconds * step.seconds);
+                let bend = bound.outward.dot(&acceleration).abs();
+                impact_time_bound(doubt, bound.outward.dot(&velocity), bend)
+            }
+            None if step.exact => stretch_bound(step.time(to)),
+            None => return None,
+        };
+        Some(self.bound_of(&velocity, seconds, doubt))
     }
 
     /// In how many seconds friction will have stopped a ball that turns as it slides, if it is known: where the rest test has a speed of its
@@ -326,13 +347,13 @@ impl<O: Observer> Walk<'_, O> {
     /// The neighbouring place takes over.
     fn cross(&mut self, contact: usize, bound: &RegionBound) {
         let Some(contact) = self.contacts.iter_mut().filter(|c| c.lasting).nth(contact) else { return };
-        let foot = self.obstacles.mesh(contact.surface).and_then(|m| m.foot(bound.next, &self.state.position));
-        if let Some((_, normal)) = foot {
-            // From a face to its border the normal is the same, and known better than from where the ball is.
-            let keeps =
-                matches!((contact.site, bound.next), (Some(Site::Face(_)), Site::Edge { .. } | Site::Vertex { .. }));
-            contact.normal = if keeps { contact.normal } else { normal };
-            contact.site = Some(bound.next);
+        // From a face to its border the normal is the same, and known better than from where the ball is; a ball on the border itself has no other.
+        let keeps =
+            matches!((contact.site, bound.next), (Some(Site::Face(_)), Site::Edge { .. } | Site::Vertex { .. }));
+        let mesh = self.obstacles.mesh(contact.surface);
+        let turned = || mesh.and_then(|m| m.foot(bound.next, &self.state.position)).map(|(_, normal)| normal);
+        if let Some(normal) = if keeps { Some(contact.normal) } else { turned() } {
+            (contact.normal, contact.site) = (normal, Some(bound.next));
         }
         if self.motion == Motion::Sliding {
             self.make_tangential();

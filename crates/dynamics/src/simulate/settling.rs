@@ -36,8 +36,9 @@ impl<O: Observer> Walk<'_, O> {
     pub(super) fn settle(&mut self, left: Option<Contact>) -> bool {
         let sliding = self.motion == Motion::Sliding;
         let a = self.forces.acceleration(&self.state, &mut self.counters);
-        self.count_low_hops(&a);
-        if self.bounces_on(&a) {
+        let most = a.norm();
+        self.count_low_hops(most);
+        if self.bounces_on(most) {
             self.counters.rest += self.contacts.len() as u64;
             self.set_flying(left);
             return false;
@@ -114,18 +115,18 @@ impl<O: Observer> Walk<'_, O> {
     }
 
     /// Whether every contact is left so fast, and has been for so short a time, that bouncing goes on however it is pressed: what presses it is
-    /// not more than all of the acceleration `a`.
-    fn bounces_on(&self, a: &Vector3<f64>) -> bool {
-        let slow = self.plan.rest.at(2.0 * a.norm()).speed;
+    /// not more than all of the acceleration, `most` (m/s^2).
+    fn bounces_on(&self, most: f64) -> bool {
+        let slow = self.plan.rest.at(2.0 * most).speed;
         self.standstill < PATIENCE_WITH_HOPS
             && self.low_hops <= PATIENCE_WITH_LOW_HOPS
             && self.integrator.timestep().is_none()
             && self.contacts.iter().all(|c| c.rate > slow)
     }
 
-    /// Counts the impacts in a row after which no hop is high.
-    fn count_low_hops(&mut self, a: &Vector3<f64>) {
-        let low = self.plan.rest.low_hop(a.norm());
+    /// Counts the impacts in a row after which no hop is high under an acceleration of `most` (m/s^2).
+    fn count_low_hops(&mut self, most: f64) {
+        let low = self.plan.rest.low_hop(most);
         let are_low = self.contacts.iter().all(|c| c.rate <= low);
         self.low_hops = if are_low { self.low_hops + 1 } else { 0 };
     }

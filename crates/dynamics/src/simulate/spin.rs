@@ -1,6 +1,7 @@
 //! Spin: what surfaces that grip make of it, at impacts, in slipping and in rolling.
 
 use super::Walk;
+use super::flight::Closing;
 use crate::body::State;
 use crate::contacts::{Contact, Contacts};
 use crate::effects::friction::Friction;
@@ -10,7 +11,6 @@ use crate::integrators::{Step, exact};
 use crate::observer::Observer;
 use crate::response::{changed_rate, respond};
 use crate::sliding::{Balance, Carrier, Slide};
-use crate::surface::Material;
 use crate::tolerance::{parallel, rate_rounding};
 use crate::turning::Turning;
 use carom_geometry::site::Bend;
@@ -41,17 +41,11 @@ impl<O: Observer> Walk<'_, O> {
     ///
     /// The normal momentum of each is what the impact has changed along its normal; where friction drives the ball into another contact, that
     /// answers again.
-    pub(super) fn grip(
-        &mut self,
-        velocity_in: Vector3<f64>,
-        contacts: &mut Contacts,
-        closing: &[bool],
-        materials: &[Material],
-    ) {
-        let ball = self.forces.ball;
+    pub(super) fn grip(&mut self, velocity_in: Vector3<f64>, contacts: &mut Contacts, closing: Closing) {
+        let (ball, surfaces) = (self.forces.ball, self.surfaces);
         let change = self.state.velocity - velocity_in;
-        for i in (0..contacts.len()).filter(|&i| closing[i]) {
-            let Friction::Grip(grip) = materials[i].friction else { continue };
+        for i in (0..contacts.len()).filter(|&i| closing.has(i)) {
+            let Friction::Grip(grip) = surfaces[contacts[i].surface].material.friction else { continue };
             let n = contacts[i].normal;
             let u = grip::slip(ball, &self.state.velocity, &self.forces.body.spin, &n);
             let kick = grip.kick(&u, ball.inertia(), n.dot(&change).max(0.0));
@@ -59,7 +53,8 @@ impl<O: Observer> Walk<'_, O> {
             self.kick(&kick, &n, contacts);
         }
         if contacts.iter().any(|c| c.rate < 0.0) {
-            self.state.velocity = respond(self.state.velocity, contacts, materials, &mut self.counters);
+            let material = |c: &Contact| &surfaces[c.surface].material;
+            self.state.velocity = respond(self.state.velocity, contacts, material, &mut self.counters);
         }
     }
 

@@ -99,6 +99,9 @@ mod tests {
         // Within the cone, as it is; beyond it on either side, the normal of the face there.
         let inside = Vector3::new(0.25 * 0.5f64.powi(20), 0.0, 1.0);
         assert_eq!(m.cone_normal(ridge, &(inside * least)), inside.try_normalize(0.0));
+        // What rounding has left along the ridge is none of it.
+        let slanted = m.cone_normal(ridge, &((inside + Vector3::y() * 0.25) * least)).unwrap();
+        assert!((slanted - inside.normalize()).norm() <= 1e-15, "{slanted}");
         for (x, face) in [(-0.5, 0), (0.5, 1)] {
             let away = Vector3::new(x * 0.5f64.powi(14), 0.0, 1.0) * least;
             assert_eq!(m.cone_normal(ridge, &away), Some(normals[face]), "{x}");
@@ -121,5 +124,37 @@ mod tests {
         let slope = m.cone_normal(end, &(Vector3::new(0.3, 0.3, 0.4) * least)).unwrap();
         assert!(slope.z > 0.0 && [1.0, -1.0].map(|side| m.normal(2).unwrap().into_inner() * side).contains(&slope));
         assert_eq!(m.cone_normal(end, &Vector3::new(0.0, 0.3, 0.4)), Some(Vector3::new(0.0, 0.6, 0.8)));
+    }
+
+    #[test]
+    fn beside_the_cone_of_a_tip_the_normal_is_that_of_the_next_face_or_edge_however_it_is_turned() {
+        let rim = [[1.0, 0.25], [0.5, 1.0], [-0.75, 0.75], [-1.0, -0.5], [0.25, -1.0]];
+        // With the tip first and last among the coordinates along every axis.
+        for axis in 0..3 {
+            for side in [1.0, -1.0] {
+                let turned = |p: [f64; 3]| Vector3::from([0, 1, 2].map(|i| side * p[(i + axis) % 3]));
+                let tip = Vector3::new(3.0, -2.0, 5.0);
+                let at = |p: [f64; 3]| Point3::from(tip + turned(p));
+                let vertices: Vec<_> = rim.iter().map(|&[x, y]| at([x, y, -0.5])).chain([at([0.0; 3])]).collect();
+                let m = Mesh::new(vertices.clone(), (0..5).map(|i| [5, i, (i + 1) % 5]).collect()).unwrap();
+                let site = Site::Vertex { vertex: 5, face: 0 };
+                let up = turned([0.0, 0.0, 1.0]);
+                let (small, beside) = (0.5f64.powi(52), 0.5f64.powi(6));
+                let normals: Vec<_> = (0..5).map(|face| m.facing(face, &up).unwrap()).collect();
+                for face in 0..5 {
+                    let next = (face + 1) % 5;
+                    let [left, right] = [face, next].map(|i| (vertices[i] - vertices[5]).normalize());
+                    // Over the face between two edges: its own, to the bit.
+                    let away = normals[face] + (left + right) * beside;
+                    assert_eq!(m.cone_normal(site, &(away * small)), Some(normals[face]), "face {face}, axis {axis}");
+                    // Over the edge: what is across it.
+                    let across = (normals[face] + normals[next]).normalize();
+                    let found = m.cone_normal(site, &((across + right * beside) * small)).unwrap();
+                    assert!((found - across).norm() <= 1e-14, "edge {next}, axis {axis}: {found}, not {across}");
+                }
+                // Within: as it is.
+                assert_eq!(m.cone_normal(site, &(up * small)), Some(up));
+            }
+        }
     }
 }

@@ -13,7 +13,7 @@ use nalgebra::{Point3, Vector3};
 use smallvec::SmallVec;
 
 /// A path is cut no finer than into pieces whose sagitta is this share of the larger of the radius and a face's size.
-const SAGITTA_SHARE: f64 = 0.0625;
+const SAGITTA_SHARE: f64 = 0.125;
 
 /// A little later than 1: where a path is back where it was, with room for rounding and for a surface that falls away.
 const JUST_AFTER: f64 = 1.0 + 1.0 / 64.0;
@@ -48,7 +48,7 @@ impl Mesh {
             end: last,
             limit: last,
             reach: 0.0,
-            stretch: Stretch::new(ball.path, 0.0, last, 0.0),
+            stretch: Stretch::default(),
             left: std::mem::take(&mut around.left),
             hidden: SmallVec::new(),
             later: SmallVec::new(),
@@ -69,17 +69,15 @@ impl Mesh {
         }
         let sagitta_limit = SAGITTA_SHARE * ball.radius.max(self.face_size());
         // Front to back: the stretch to look at next is the last of the stack.
-        let mut stack = [(0.0, last); 64];
-        let mut depth = 1;
+        let mut stack = SmallVec::<[(f64, f64); 16]>::new();
         let back = ball.holds.iter().map(|hold| hold.until).fold(f64::INFINITY, least) * JUST_AFTER;
         if back > 0.0 && back < last {
-            stack[0].0 = back;
-            stack[1] = (0.0, back);
-            depth = 2;
+            stack.push((back, last));
+            stack.push((0.0, back));
+        } else {
+            stack.push((0.0, last));
         }
-        while depth > 0 {
-            depth -= 1;
-            let (from, end) = stack[depth];
+        while let Some((from, end)) = stack.pop() {
             let chord = ball.path.chord(from, end);
             let (a, b) = (start + chord.from, start + chord.to);
             // What a contact in doubt may be off by counts as near, so that the boxes leave out no face that would report one.
@@ -95,10 +93,9 @@ impl Mesh {
                 continue;
             }
             let middle = 0.5 * (from + end);
-            if chord.sagitta > sagitta_limit && depth + 2 <= stack.len() && middle > from && middle < end {
-                stack[depth] = (middle, end);
-                stack[depth + 1] = (from, middle);
-                depth += 2;
+            if chord.sagitta > sagitta_limit && middle > from && middle < end {
+                stack.push((middle, end));
+                stack.push((from, middle));
                 continue;
             }
             search.begin(from, end, within, screen_bound(size + reach));
@@ -192,11 +189,11 @@ impl<F: Fn(u32) -> f64> Search<'_, F> {
         if self.stretch.is_off_face(&corners, normal) {
             return;
         }
-        let free = self.free_until(face);
-        if free > self.limit {
+        if self.stretch.is_off_nearest(&corners) {
             return;
         }
-        if self.stretch.is_off_edges(&corners, normal) {
+        let free = self.free_until(face);
+        if free > self.limit {
             return;
         }
         if self.best.is_none() && !self.stretch.leads_into(&corners, normal, self.ball.radius) {
@@ -212,14 +209,16 @@ impl<F: Fn(u32) -> f64> Search<'_, F> {
         if self.ball.holds.is_empty() {
             return 0.0;
         }
+        let held = self.ball.held_off(&self.mesh.triangle(face), 0.0);
+        if held > self.limit {
+            self.hidden.push(face);
+            return held;
+        }
         let known = (self.free_until)(face);
-        let free = self.ball.held_off(&self.mesh.triangle(face), known);
         if known > self.limit {
             self.left.faces.push((face, f64::INFINITY));
-        } else if free > self.limit {
-            self.hidden.push(face);
         }
-        free
+        largest(held, known)
     }
 
     /// Whether the ball is well off what its holds hide, where the piece ends.
@@ -258,7 +257,7 @@ impl<F: Fn(u32) -> f64> Search<'_, F> {
         for (face, free) in std::mem::take(&mut self.later) {
             let corners = self.mesh.triangle_from(face, &self.start);
             let normal = self.mesh.plain_normal(face);
-            let is_off = || self.stretch.is_off_face(&corners, normal) || self.stretch.is_off_edges(&corners, normal);
+            let is_off = || self.stretch.is_off_face(&corners, normal) || self.stretch.is_off_nearest(&corners);
             if free > self.limit {
                 self.left.faces.push((face, f64::INFINITY));
             } else if self.best.is_none() || !is_off() {

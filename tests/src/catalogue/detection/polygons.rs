@@ -213,9 +213,9 @@ fn points_in_concave() -> Figure {
         let mut points = Vec::new();
         for (i, a) in shape.iter().enumerate() {
             let b = shape[(i + 1) % count];
-            points.extend(neighbours2(*a, 2));
+            points.extend(neighbours2(*a, 5));
             for k in 1..8 {
-                points.extend(neighbours2(a + (b - a) * (f64::from(k) / 8.0), 1));
+                points.extend(neighbours2(a + (b - a) * (f64::from(k) / 8.0), 4));
             }
             // On the level of every vertex, where a scanline meets it.
             points.extend((0..4).map(|_| Point2::new(random.within(-1.5, 2.5), a.y)));
