@@ -9,7 +9,8 @@ use crate::contacts::{Contact, Contacts, MAX_CONTACTS, PerContact};
 use crate::counters::Counters;
 use crate::integrators::Step;
 use crate::plan::Plan;
-use crate::tolerance::{merge_angle_squared, rate_rounding};
+use crate::tolerance::{merge_angle_squared, rate_rounding, touch_distance};
+use carom_geometry::bounds::amax;
 use carom_geometry::clearance::Entry;
 use carom_geometry::contact::{Hold, MovingBall};
 use carom_geometry::mesh::{Fold, Mesh};
@@ -18,7 +19,7 @@ use carom_geometry::rounding::contact_doubt;
 use carom_geometry::site::{Bend, RegionBound, Site};
 use carom_geometry::sweep::{Surroundings, Work};
 use nalgebra::{Point3, Vector3};
-use returning::{Departure, leaves_region};
+use returning::{Departure, slides_over};
 use std::cell::Cell;
 use std::cmp::Ordering;
 
@@ -111,9 +112,10 @@ impl<'a> Obstacles<'a> {
         counters: &mut Counters,
     ) -> Option<(f64, RegionBound)> {
         let mut first: Option<(f64, RegionBound)> = None;
+        let slack = touch_distance(self.plan.farthest + amax(&step.path.start().coords), 0.0);
         for bound in self.mesh(contact.surface)?.region(contact.site?) {
             counters.clearances += 1;
-            if let Entry::At { f, .. } = leaves_region(step, &bound, from)
+            if let Entry::At { f, .. } = slides_over(step, &bound, from, slack)
                 && first.is_none_or(|(best, _)| f < best)
             {
                 first = Some((f, bound));
@@ -187,6 +189,16 @@ impl<'a> Obstacles<'a> {
         let corners = mesh.triangle(face).map(|v| (v - step.path.start()).amax());
         let size = corners.into_iter().fold(self.mesh_radius, f64::max);
         contact_doubt(size + step.path.reach(hit.f))
+    }
+
+    /// What the search that found `hit` has seen of its face, if a ball at `position` with `velocity` closes in on that.
+    pub fn seen(&self, hit: &Hit, position: &Point3<f64>, velocity: &Vector3<f64>) -> Option<Contact> {
+        let (face, mesh) = hit.face.zip(self.mesh(hit.surface))?;
+        let touch = mesh.nearest_of(face, position)?;
+        let rate = touch.normal.dot(velocity);
+        let contact =
+            Contact { surface: hit.surface, site: Some(touch.site), normal: touch.normal, rate, lasting: false };
+        (rate < 0.0).then_some(contact)
     }
 
     /// The contacts of a ball at `position` with `velocity`, to within `tolerance` (m), each with its rate n.v. If that is where it is at

@@ -13,7 +13,7 @@ use crate::integrators::adaptive::Adaptive;
 use crate::integrators::{Step, exact};
 use crate::support::{Projection, project_offset};
 use crate::tolerance::{parallel, rate_rounding};
-use carom_geometry::rounding::UNIT_ROUNDOFF;
+use carom_geometry::rounding::{UNIT_ROUNDOFF, position_bound};
 use carom_geometry::site::Bend;
 use nalgebra::{Point3, Vector3};
 
@@ -37,12 +37,27 @@ impl Carrier {
         away.unwrap_or(self.contact.normal)
     }
 
+    /// How fast the clearance would accelerate, in m/s^2, if a ball in `state`, which moves along it, were left to the acceleration `a`.
+    pub fn lift(&self, a: &Vector3<f64>, state: &State) -> f64 {
+        let n = self.normal(&state.position);
+        n.dot(a) + self.centripetal(&(state.velocity - n * n.dot(&state.velocity)))
+    }
+
     /// The part of the acceleration towards it that is rounding: that of the `position`, seen from so near.
     fn noise(&self, position: &Point3<f64>) -> f64 {
         match self.bend {
             Bend::Flat => 0.0,
             _ => UNIT_ROUNDOFF * position.coords.amax() / self.radius,
         }
+    }
+
+    /// A [`lift`](Self::lift) under the acceleration `a` that is none, by rounding, in m/s^2: up to this a ball stays on it.
+    pub fn neutral(&self, a: &Vector3<f64>, position: &Point3<f64>) -> f64 {
+        let turned = match self.bend {
+            Bend::Flat => 0.0,
+            _ => position_bound(position.coords.amax()) / self.radius * a.norm(),
+        };
+        rate_rounding(a.norm()) + turned
     }
 
     /// The acceleration towards it, in m/s^2, that following its curve takes at `velocity`: v^2 / r across an edge.
@@ -124,8 +139,7 @@ pub fn tangential(state: &State, carriers: &[Carrier]) -> State {
 
 /// Whether none of `carriers` is pressed by the acceleration `a` and the motion in `state`, by more than rounding.
 pub fn is_lifted(a: &Vector3<f64>, carriers: &[Carrier], state: &State) -> bool {
-    let lift = |c: &Carrier| c.normal(&state.position).dot(a) + c.centripetal(&state.velocity);
-    carriers.iter().all(|c| lift(c) >= rate_rounding(a.norm()))
+    carriers.iter().all(|c| c.lift(a, state) >= c.neutral(a, &state.position))
 }
 
 /// A stretch of sliding.

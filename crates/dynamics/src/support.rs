@@ -3,12 +3,12 @@
 //! Both questions are one: of all vectors that no contact forbids (n_i.w >= 0), which is nearest to a given one? For a velocity it
 //! is Moreau's projection, for an acceleration Gauss's principle; the multipliers are the impulses and the loads. In three
 //! dimensions at most three contacts push, so the few subsets are tried, the smallest first.
+//!
+//! What counts is that nothing is forbidden: in the corner of an acute wedge the loads are the quotients of small differences, and their signs may be
+//! rounding. Then it is the nearest of the allowed places (on a plane, in a groove, in the corner) all the same, and to stand still is always allowed.
 
 use crate::tolerance::rate_rounding;
-use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
-
-/// Solutions of a small system, each for what the last one left: normals that are nearly one lose digits in its determinant.
-const REFINEMENTS: usize = 3;
+use nalgebra::Vector3;
 
 /// The nearest allowed vector, and what each contact adds to reach it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,6 +20,15 @@ pub struct Projection {
 }
 
 impl Projection {
+    /// `velocity`, reached by the loads of up to three contacts; those that are negative by rounding are none.
+    fn new(velocity: Vector3<f64>, loads: &[(usize, f64)]) -> Self {
+        let mut pushing = [(0, 0.0); 3];
+        for (slot, &(i, load)) in pushing.iter_mut().zip(loads) {
+            *slot = (i, load.max(0.0));
+        }
+        Self { velocity, pushing, count: loads.len() }
+    }
+
     /// The contacts that push, as (index, load), each load >= 0 and along its normal.
     pub fn loads(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         self.pushing[..self.count].iter().copied()
@@ -36,81 +45,89 @@ pub fn project(w: &Vector3<f64>, normals: &[Vector3<f64>]) -> Projection {
     project_offset(w, normals, |_| 0.0)
 }
 
-/// The vector nearest to `w` with n_i.w >= -`allowed(i)`: a contact that curves away lets the ball accelerate towards it.
+/// The vector nearest to `w` with n_i.w >= -`allowed(i)`, `allowed(i)` >= 0: a contact that curves away lets the ball accelerate towards it.
 pub fn project_offset(w: &Vector3<f64>, normals: &[Vector3<f64>], allowed: impl Fn(usize) -> f64) -> Projection {
-    let none = Projection { velocity: *w, pushing: [(0, 0.0); 3], count: 0 };
-    if normals.iter().enumerate().all(|(i, n)| n.dot(w) + allowed(i) >= 0.0) {
-        return none;
-    }
-    // How far `v` is from allowed, and how large what rounding makes of its loads.
-    let excess =
-        |v: &Vector3<f64>| normals.iter().enumerate().map(|(i, n)| -(n.dot(v) + allowed(i))).fold(0.0, f64::max);
-    let m = normals.len();
     let lack = |v: &Vector3<f64>, i: usize| -(normals[i].dot(v) + allowed(i));
-    // If rounding decides and no subset solves, the one that comes nearest.
-    let mut best = (f64::INFINITY, Projection { velocity: Vector3::zeros(), ..none });
-    let mut good = |v: Vector3<f64>, pushing: &[(usize, f64)]| {
-        let sum: f64 = pushing.iter().map(|(_, load)| load).sum();
-        let over = excess(&v);
-        if pushing.iter().any(|(_, load)| *load < 0.0) || over >= best.0 {
-            return None;
-        }
-        let mut all = [(0, 0.0); 3];
-        all[..pushing.len()].copy_from_slice(pushing);
-        best = (over, Projection { velocity: v, pushing: all, count: pushing.len() });
-        (over <= rate_rounding(w.norm() + sum)).then_some(best.1)
+    let m = normals.len();
+    let deepest = (0..m).map(|i| (i, lack(w, i))).max_by(|a, b| a.1.total_cmp(&b.1));
+    let Some(deepest) = deepest.filter(|(_, lack)| *lack > 0.0) else {
+        return Projection::new(*w, &[]);
     };
+    let mut search = Search { w, nearest: Projection::new(Vector3::zeros(), &[deepest]), least: f64::NEG_INFINITY };
+    let excess = |v: &Vector3<f64>| (0..m).map(|i| lack(v, i)).fold(0.0, f64::max);
+    let is_allowed = |v: &Vector3<f64>| excess(v) <= rate_rounding(w.norm() + v.norm());
     for (i, normal) in normals.iter().enumerate() {
         let load = lack(w, i);
-        if let Some(found) = good(w + normal * load, &[(i, load)]) {
-            return found;
+        let v = w + normal * load;
+        if is_allowed(&v) && search.ends_with(v, &[(i, load)]) {
+            return search.nearest;
         }
     }
     for i in 0..m {
         for j in i + 1..m {
-            let c = normals[i].dot(&normals[j]);
-            let Some(inverse) = Matrix2::new(1.0, c, c, 1.0).try_inverse() else { continue };
-            let mut load = Vector2::zeros();
-            let mut v = *w;
-            for _ in 0..REFINEMENTS {
-                load += inverse * Vector2::new(lack(&v, i), lack(&v, j));
-                v = w + normals[i] * load.x + normals[j] * load.y;
+            let (a, b) = (&normals[i], &normals[j]);
+            let along = groove(a, b);
+            let square = along.norm_squared();
+            if square == 0.0 {
+                continue;
             }
-            let v = in_groove(w, [&normals[i], &normals[j]], [allowed(i), allowed(j)]);
-            if let Some(found) = good(v, &[(i, load.x), (j, load.y)]) {
-                return found;
+            // Put together in the directions of the groove: `w` plus the loads would leave in v the rounding of the loads, which in an acute
+            // groove are much larger than w.
+            let v = (along * along.dot(w) - b.cross(&along) * allowed(i) - along.cross(a) * allowed(j)) / square;
+            let change = v - w;
+            let loads = [(i, change.cross(b).dot(&along) / square), (j, a.cross(&change).dot(&along) / square)];
+            if is_allowed(&v) && search.ends_with(v, &loads) {
+                return search.nearest;
             }
         }
     }
-    let fixed = (0..m).all(|i| allowed(i) == 0.0);
     for i in 0..m {
         for j in i + 1..m {
             for k in j + 1..m {
-                let across = Matrix3::from_columns(&[normals[i], normals[j], normals[k]]);
-                let Some(inverse) = (across.transpose() * across).try_inverse() else { continue };
-                let (mut v, mut load) = (*w, Vector3::zeros());
-                for _ in 0..REFINEMENTS {
-                    load += inverse * Vector3::new(lack(&v, i), lack(&v, j), lack(&v, k));
-                    v = w + across * load;
+                let [a, b, c] = [i, j, k].map(|i| &normals[i]);
+                let across = [groove(b, c), groove(c, a), groove(a, b)];
+                let volume = across[0].dot(a);
+                if volume == 0.0 {
+                    continue;
                 }
-                let v = if fixed { Vector3::zeros() } else { v };
-                if let Some(found) = good(v, &[(i, load.x), (j, load.y), (k, load.z)]) {
-                    return found;
+                let v = Vector3::zeros()
+                    - (across[0] * allowed(i) + across[1] * allowed(j) + across[2] * allowed(k)) / volume;
+                let load = |l: usize| across[l].dot(&(v - w)) / volume;
+                if is_allowed(&v) && search.ends_with(v, &[(i, load(0)), (j, load(1)), (k, load(2))]) {
+                    return search.nearest;
                 }
             }
         }
     }
-    best.1
+    search.nearest
 }
 
-/// The vector with n_i.v = -`allowed[i]` for both `normals` that is `w` along their groove.
-///
-/// Put together in the directions of the groove: `w` plus the loads would leave in v the rounding of the loads, which in an acute groove
-/// are much larger than w.
-fn in_groove(w: &Vector3<f64>, normals: [&Vector3<f64>; 2], allowed: [f64; 2]) -> Vector3<f64> {
-    let along = normals[0].cross(normals[1]);
-    let v = along * along.dot(w) - normals[1].cross(&along) * allowed[0] - along.cross(normals[0]) * allowed[1];
-    v / along.norm_squared()
+/// The nearest to `w` of the allowed vectors seen so far.
+struct Search<'a> {
+    w: &'a Vector3<f64>,
+    nearest: Projection,
+    /// The least of its loads.
+    least: f64,
+}
+
+impl Search<'_> {
+    /// Sees the allowed vector `v`, which the `loads` lead to; says whether it is the nearest of all because they all push.
+    fn ends_with(&mut self, v: Vector3<f64>, loads: &[(usize, f64)]) -> bool {
+        let least = loads.iter().map(|(_, load)| *load).fold(f64::INFINITY, f64::min);
+        // |w - nearest|^2 - |w - v|^2 as a product: the squares may be the same to rounding.
+        let nearer = (v - self.nearest.velocity).dot(&((self.w - self.nearest.velocity) + (self.w - v)));
+        if least >= 0.0 || nearer > 0.0 || (nearer == 0.0 && least > self.least) {
+            (self.nearest, self.least) = (Projection::new(v, loads), least);
+        }
+        least >= 0.0
+    }
+}
+
+/// The direction of the groove between two planes with unit normals `a` and `b`: a x b, to about a rounding of its length however acute the groove is,
+/// because of normals that are nearly one or opposite it is their difference that counts, and that is exact.
+fn groove(a: &Vector3<f64>, b: &Vector3<f64>) -> Vector3<f64> {
+    let difference = if a.dot(b) < 0.0 { b + a } else { b - a };
+    a.cross(&difference)
 }
 
 /// The part of `v` along all planes with these normals: of three, none.
@@ -118,7 +135,7 @@ pub fn along(normals: &[Vector3<f64>], v: Vector3<f64>) -> Vector3<f64> {
     match normals {
         [] => v,
         [n] => v - n * n.dot(&v),
-        [a, b] => a.cross(b).try_normalize(0.0).map_or(v, |t| t * t.dot(&v)),
+        [a, b] => groove(a, b).try_normalize(0.0).map_or(v, |t| t * t.dot(&v)),
         _ => Vector3::zeros(),
     }
 }

@@ -227,7 +227,9 @@ impl Bend {
     pub fn away_from(&self, centre: &Point3<f64>) -> Option<Vector3<f64>> {
         match self {
             Bend::Flat => None,
-            Bend::Around { point, .. } | Bend::About { point } => Some(self.across(&(centre - point))),
+            // Of the small difference of two places, rounding has left a part along the edge: for a small ball, as much as it moves across.
+            Bend::Around { point, .. } => Some(self.across(&self.across(&(centre - point)))),
+            Bend::About { point } => Some(centre - point),
         }
     }
 

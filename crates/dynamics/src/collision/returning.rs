@@ -67,10 +67,19 @@ fn leaves_until(step: &Step, bend: Bend, radius: f64, slope: f64) -> f64 {
     off.first_entry(0.0, step.to).f().unwrap_or(f64::INFINITY)
 }
 
-/// Where the step, after `from`, crosses a bound of the region of a place.
-pub(super) fn leaves_region(step: &Step, bound: &RegionBound, from: f64) -> Entry {
+/// Where the step crosses a bound of the region of a place.
+fn leaves_region(step: &Step, bound: &RegionBound) -> Entry {
     let inward = -bound.outward;
     let gap = inward.dot(&(step.path.start() - bound.point));
+    step.path.clearance(gap, &inward).first_entry(0.0, step.to)
+}
+
+/// The same after `from`, for a ball that stays on the place until then. Where it starts from the bound to within `slack` (m), it leaves only by more than
+/// that: what moves along the bound would otherwise be taken from both sides of it by the rounding of its velocity or its place, without end.
+pub(super) fn slides_over(step: &Step, bound: &RegionBound, from: f64, slack: f64) -> Entry {
+    let inward = -bound.outward;
+    let gap = inward.dot(&(step.path.start() - bound.point));
+    let gap = if from == 0.0 && gap.abs() <= slack { slack } else { gap };
     step.path.clearance(gap, &inward).first_entry(from, step.to)
 }
 
@@ -98,7 +107,7 @@ impl Departure<'_> {
         let mut free = leaves_until(step, bend, self.radius, slope);
         for bound in mesh.region(site).iter().filter(|bound| mesh.is_at(face, bound.next)) {
             clearances.set(clearances.get() + 1);
-            if let Entry::At { f, .. } = leaves_region(step, bound, 0.0) {
+            if let Entry::At { f, .. } = leaves_region(step, bound) {
                 free = free.min(f);
             }
         }

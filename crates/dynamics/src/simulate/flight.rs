@@ -124,6 +124,18 @@ impl<O: Observer> Walk<'_, O> {
             self.correct(contact, tolerance);
             contact.rate = self.rate(step, hit, contact, &before, returns);
         }
+        if hit.f == 0.0 && contacts.iter().all(|c| c.rate >= 0.0) {
+            // Nearest to the ball is an edge that it leaves, but by less than rounding: the search has seen the vertex at its end, to which the ball
+            // comes nearer. Either is touched; the one that closes is answered, or it would be found for ever.
+            let place = |c: &Contact| (c.surface, c.site);
+            let seen = self.obstacles.seen(&hit, &self.state.position, &velocity);
+            if let Some(seen) = seen.filter(|seen| contacts.iter().all(|c| place(c) != place(seen)))
+                && contacts.len() < MAX_CONTACTS
+            {
+                contacts.push(seen);
+                contacts.sort_by(|a, b| self.obstacles.order(a, b));
+            }
+        }
         self.bound = self.bound(step, &hit, tolerance, &contacts);
         let collapses = self.collapses(&mut contacts, tolerance);
         let carrier = before.iter().find(|b| b.lasting).copied();

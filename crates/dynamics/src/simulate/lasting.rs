@@ -120,11 +120,13 @@ impl<O: Observer> Walk<'_, O> {
         if self.settling.is_none() && !slips && stopping.is_none() && self.try_to_rest(self.state.velocity) {
             return;
         }
-        if balance.loads.count() == 0 && self.settling.is_none() {
+        let flat = carriers.iter().all(|c| c.bend == Bend::Flat);
+        let lifted = balance.loads.count() == 0 && (flat || is_lifted(&a, &carriers, &self.state));
+        if lifted && self.settling.is_none() {
             self.set_flying(carriers.first().map(|c| c.contact));
             return;
         }
-        if self.drop_unloaded(&carriers, &balance) {
+        if self.drop_unloaded(&a, &carriers, &balance) {
             return;
         }
         self.begin_rolling(rolls);
@@ -139,7 +141,6 @@ impl<O: Observer> Walk<'_, O> {
             (None, Some(settling), _) => self.settling_flight(&settling, &carriers, &balance),
             (None, None, Some(last)) => last,
             (None, None, None) => {
-                let flat = carriers.iter().all(|c| c.bend == Bend::Flat);
                 let slider = if flat { &mut self.slider } else { &mut self.roller };
                 slide(slider, &forces, &self.state, &carriers, &balance, remaining, &mut self.counters)
             }
@@ -276,15 +277,15 @@ impl<O: Observer> Walk<'_, O> {
     }
 
     /// Lets go of contacts that the ball accelerates away from; says whether there were any.
-    fn drop_unloaded(&mut self, carriers: &[Carrier], balance: &Balance) -> bool {
+    fn drop_unloaded(&mut self, a: &Vector3<f64>, carriers: &[Carrier], balance: &Balance) -> bool {
         if self.settling.is_some() {
             return false;
         }
-        let velocity = self.state.velocity;
+        let State { position, velocity } = self.state;
         let mut dropped = false;
         for (i, contact) in self.contacts.iter_mut().filter(|c| c.lasting).enumerate() {
             let lift = contact.normal.dot(&balance.free) + carriers[i].centripetal(&velocity);
-            if !balance.loads.loads().any(|(loaded, _)| loaded == i) && lift > balance.rounding {
+            if !balance.loads.loads().any(|(loaded, _)| loaded == i) && lift > carriers[i].neutral(a, &position) {
                 contact.lasting = false;
                 dropped = true;
             }

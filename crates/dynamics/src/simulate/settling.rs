@@ -1,6 +1,7 @@
 //! The end of bouncing: which contacts hold the ball, and the last hops, summed.
 
 use super::{Settling, Walk};
+use crate::body::State;
 use crate::contacts::{Contact, MAX_CONTACTS, PerContact};
 use crate::effects::friction::{ContactFriction, Friction};
 use crate::events::Motion;
@@ -23,7 +24,7 @@ struct Hop {
     rate: f64,
     /// How strongly it is pressed, in m/s^2.
     pressed: f64,
-    /// How much of that may be rounding, where it matters: beside a contact that is held, in m/s^2.
+    /// How much of that may be rounding, where it matters: beside a contact that is held, and around an edge, in m/s^2.
     neutral: f64,
 }
 
@@ -98,15 +99,17 @@ impl<O: Observer> Walk<'_, O> {
         let normals: PerContact<Vector3<f64>> = held.iter().map(|c| c.contact.normal).collect();
         let free = if held.is_empty() { *a } else { Balance::of(a, &held, &self.state).free };
         let velocity = along(&normals, self.state.velocity);
-        let neutral = if held.is_empty() { 0.0 } else { rate_rounding(a.norm()) };
         let mut next: Option<(usize, Hop)> = None;
         for (i, carrier) in carriers.iter().enumerate().filter(|(i, _)| !carrying[*i]) {
             let contact = &carrier.contact;
             let rate = if contact.rate == 0.0 { 0.0 } else { changed_rate(contact, &self.state.velocity, &velocity) };
-            let pressed = -contact.normal.dot(&free) - carrier.centripetal(&velocity);
+            let pressed = -carrier.lift(&free, &State { velocity, ..self.state });
+            let surely = held.is_empty() && carrier.bend == Bend::Flat;
+            let neutral = if surely { 0.0 } else { carrier.neutral(a, &self.state.position) };
             let hop = Hop { rate, pressed, neutral };
-            // Two leave one direction to move in, a third none: it is nothing for a ball that moves.
-            let moves = held.len() > 1 && velocity.norm() > self.plan.rest.at(pressed.max(0.0)).speed;
+            // Two leave one direction to move in, a third none: it is nothing for a ball that moves. One that is driven back along the groove
+            // before it has got as far as a hop may be high does not, however slowly the groove leads away from the third.
+            let moves = held.len() > 1 && velocity.norm() > self.plan.rest.at(free.norm()).speed;
             if !moves && self.ends_bouncing(contact, &hop) && next.is_none_or(|(_, other)| rate < other.rate) {
                 next = Some((i, hop));
             }

@@ -79,6 +79,13 @@ impl Mesh {
         touching.conclude()
     }
 
+    /// What of `face` is nearest to `centre`, whatever else is, and the direction from there: what a search that reports the face has seen.
+    /// None where the centre lies on it.
+    pub fn nearest_of(&self, face: u32, centre: &Point3<f64>) -> Option<Touch> {
+        let closest = Asked::new(self.triangle_from(face, centre)).closest(&Vector3::zeros());
+        closest.offset.try_normalize(0.0).map(|normal| Touch { site: self.site(face, closest.feature), normal })
+    }
+
     /// Whether the fold at `edge` of `face` is hollow on the side that `away` points to, and `away` at least `height` above the face.
     fn rises(&self, face: u32, edge: u8, away: &Vector3<f64>, height: f64) -> bool {
         let fold = self.fold(face, edge.into());
