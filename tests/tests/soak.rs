@@ -34,14 +34,12 @@ fn the_shares_of_the_families_are_the_whole() {
 #[test]
 fn h5_what_is_shot_at_edges_from_inside_stays_inside() {
     for closed in Closed::all() {
-        // Not yet so for squashed bodies: of their millionfold flattened wedges, one slide in some thousand is ended by a guard or never ends.
-        let ends = closed.treatment != Treatment::Squashed;
         for shot in SHOTS {
-            let tally = shoot(&closed, shot, if ends { 24 } else { 8 }, 1);
+            let tally = shoot(&closed, shot, 24, 1);
             let name = || format!("{} {:?}: {tally:#?}", closed.body, closed.treatment);
-            assert_eq!(tally.outside + tally.missed, 0, "{}", name());
-            assert!(tally.is_sound() || (!ends && tally.guarded + tally.stalled <= 1), "{}", name());
-            assert!(shot.ball || !ends || tally.met > 0, "{}", name());
+            assert!(tally.is_sound(), "{}", name());
+            // Of a body a million times flatter than it is wide, the first thing met is mostly another.
+            assert!(shot.ball || closed.treatment == Treatment::Squashed || tally.met > 0, "{}", name());
         }
     }
 }

@@ -175,4 +175,35 @@ mod tests {
         assert_eq!(p.loads().collect::<Vec<_>>(), [(1, 9.0)]);
         assert_eq!(project(&Vector3::new(1.0, 0.0, 2.0), &[Vector3::x(), Vector3::z()]).count(), 0);
     }
+
+    #[test]
+    fn r33_in_the_corner_of_a_flat_wedge_nothing_moves_where_nothing_is_allowed_to() {
+        // Three faces of the cow with its z times 10^-6; the groove of the first two leads into the third.
+        let normals = [
+            Vector3::new(-1.3727475984811537e-5, -1.9847707492453558e-7, 0.9999999999057586),
+            Vector3::new(2.5363429362996367e-6, 4.752743983003709e-6, -0.9999999999854892),
+            Vector3::new(5.99295746690405e-6, 7.415127194105935e-6, 0.9999999999545504),
+        ];
+        let w = Vector3::new(0.198_428_586, -0.200_173_856, 1.156_253_597);
+        for order in [[0, 1, 2], [2, 1, 0], [1, 2, 0], [0, 2, 1], [2, 0, 1], [1, 0, 2]] {
+            let p = project(&w, &order.map(|i| normals[i]));
+            assert_eq!((p.velocity, p.count()), (Vector3::zeros(), 3));
+            let pushed: Vector3<f64> = p.loads().map(|(i, load)| normals[order[i]] * load).sum();
+            let most = p.loads().map(|(_, load)| load).fold(0.0, f64::max);
+            assert!((pushed + w).norm() <= rate_rounding(most), "{:e} of {most:e}", (pushed + w).norm());
+        }
+    }
+
+    #[test]
+    fn a_groove_is_as_straight_as_its_normals_however_acute() {
+        for k in 4..40 {
+            let slope = 0.5f64.powi(k);
+            let [a, b] = [slope, -1.25 * slope].map(|s| Vector3::new(s, 0.3 * slope, 1.0).normalize());
+            for b in [b, -b] {
+                let along = groove(&a, &b).normalize();
+                let off = a.dot(&along).abs().max(b.dot(&along).abs());
+                assert!(off <= rate_rounding(1.0), "{off:e} at 2^-{k}");
+            }
+        }
+    }
 }

@@ -276,7 +276,8 @@ impl<O: Observer> Walk<'_, O> {
         }
     }
 
-    /// Lets go of contacts that the ball accelerates away from; says whether there were any.
+    /// Lets go of contacts that the ball accelerates away from; says whether there were any. Of more than two, those go as well that carry nothing,
+    /// or they would hold a ball that the others let move.
     fn drop_unloaded(&mut self, a: &Vector3<f64>, carriers: &[Carrier], balance: &Balance) -> bool {
         if self.settling.is_some() {
             return false;
@@ -285,7 +286,9 @@ impl<O: Observer> Walk<'_, O> {
         let mut dropped = false;
         for (i, contact) in self.contacts.iter_mut().filter(|c| c.lasting).enumerate() {
             let lift = contact.normal.dot(&balance.free) + carriers[i].centripetal(&velocity);
-            if !balance.loads.loads().any(|(loaded, _)| loaded == i) && lift > carriers[i].neutral(a, &position) {
+            if !balance.loads.loads().any(|(loaded, _)| loaded == i)
+                && (carriers.len() > 2 || lift > carriers[i].neutral(a, &position))
+            {
                 contact.lasting = false;
                 dropped = true;
             }
