@@ -3,7 +3,7 @@
 use super::{Contact, Entry, Query, Support};
 use crate::bounds::is_lower;
 use crate::closest::Feature;
-use crate::rounding::{UNIT_ROUNDOFF, exponent, power_of_two};
+use crate::rounding::{exponent, power_of_two};
 use nalgebra::Vector3;
 
 /// How often to look ahead: the edge that is nearest first may not be the one, nor its end.
@@ -24,7 +24,6 @@ impl Query<'_> {
     /// Looks at the triangle from where the ball seems to meet `feature`, which is nearest to it at `f`. Any plane with the triangle behind it
     /// that the ball does not overlap at `f` is a certificate from there on, wherever it was taken.
     pub(super) fn look_ahead(&self, feature: Feature, f: f64, to: f64, rounds: &mut u64) -> Ahead {
-        let (path, radius) = (self.ball.path, self.ball.radius);
         // In a unit in which squares are in range.
         let unit = power_of_two(-exponent(self.size));
         let (mut f, mut feature) = (f, feature);
@@ -42,12 +41,8 @@ impl Query<'_> {
                 _ => return Ahead::Ends(Contact::Miss),
             };
             if plane.at(there).abs() <= near && plane.rate(there) < 0.0 {
-                let at = plane.first_entry(f, self.end).f().unwrap_or(f);
-                // A ball that moves by m from where its plane was taken is m^2 / 2 r farther off than the plane says.
-                let moved = (path.displacement(at) - path.displacement(there)) * unit;
-                let is_there = moved.norm_squared() <= UNIT_ROUNDOFF * (radius * unit) * (radius * unit);
                 let feature = support.feature;
-                let f = if is_there { at } else { self.polish((support, plane), f, bound, rounds) };
+                let f = self.polish((support, plane), f, bound, rounds);
                 return Ahead::Ends(Contact::At { f, feature });
             }
             if support.feature == feature {
