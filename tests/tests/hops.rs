@@ -156,14 +156,14 @@ fn h06_a_ball_that_hops_along_a_floor_meets_the_wall_at_its_end_in_time() {
         let hop = 2.0 * up / 10.0;
         for k in 0..40 {
             // The floor is hit at the end of each hop; it starts on the floor, with a whole one ahead.
-            let x = 3.0 + 0.017 * f64::from(k);
+            let x = 3.0013 + 0.017 * f64::from(k);
             let t = (10.0 - radius - x) / speed;
             let stage = Stage::new(t + 1.0).down(10.0).mesh("room", smooth(1.0), vertices.clone(), faces.clone());
             let run = stage.ball([x, 0.3, radius], [speed, 0.0, up], radius).run();
             let (walls, floors): (Vec<Event>, Vec<Event>) = run.impacts().iter().partition(|e| e.normal.x < -0.5);
             assert_eq!(walls.len(), 1, "from {x} at {speed}");
             assert!((walls[0].time - t).abs() <= 1e-12 * t, "from {x} at {speed}: {} s, not {t}", walls[0].time);
-            assert_eq!(floors.len() as f64, ((t + 1.0) / hop - 1e-9).floor(), "from {x} at {speed}");
+            assert_eq!(floors.len() as f64, ((t + 1.0) / hop).floor(), "from {x} at {speed}");
         }
     }
 }

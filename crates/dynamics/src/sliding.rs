@@ -31,10 +31,10 @@ pub struct Carrier {
 }
 
 impl Carrier {
-    /// The unit normal at `position`.
+    /// The unit normal at `position`; of a point that lies on the border itself, though it is met as a ball, the one it came with.
     fn normal(&self, position: &Point3<f64>) -> Vector3<f64> {
-        let away = self.bend.away_from(position).and_then(|away| away.try_normalize(0.0));
-        away.unwrap_or(self.contact.normal)
+        let away = self.bend.away_from(position).filter(|away| away.norm() >= 0.5 * self.radius);
+        away.and_then(|away| away.try_normalize(0.0)).unwrap_or(self.contact.normal)
     }
 
     /// How fast the clearance would accelerate, in m/s^2, if a ball in `state`, which moves along it, were left to the acceleration `a`.

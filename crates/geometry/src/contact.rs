@@ -6,12 +6,15 @@
 //! was, so the answer is never late; doubt within the rounding bound is a hit. (Conservative advancement: Mirtich 1996; the
 //! support plane makes it exact for a face and quadratically convergent for edges and vertices.)
 
+mod ahead;
+
 use crate::bounds::{amax, largest};
 use crate::clearance::{Clearance, Entry};
 use crate::closest::{Asked, Feature};
 use crate::normal::unit;
 use crate::path::Path;
 use crate::rounding::{UNIT_ROUNDOFF, contact_bound, hold_bound};
+use ahead::Ahead;
 use nalgebra::{Point3, Vector3};
 
 /// A plane the ball is known to touch at the start of its path: the contact it just had, or has.
@@ -132,33 +135,19 @@ pub(crate) fn contact_from(ball: &MovingBall, asked: &Asked, from: f64, to: f64,
     if from > to {
         return Contact::Miss;
     }
+    let query = Query::new(ball, asked, to);
     let (path, mut f) = (ball.path, from);
-    let size = asked.corners().iter().map(amax).fold(ball.radius, largest);
-    let bound_at = |f: f64| contact_bound(size + path.reach(f));
-    // Planes are met on the whole path: a contact at `to` is decided as one before it.
-    let end = to.max(1.0);
-    // Never late: a plane is moved towards the ball by the bound that holds where the path meets it.
-    let meets = |gap: f64, normal: &Vector3<f64>, f: f64| {
-        let bound = 2.0 * bound_at(f);
-        let entry = path.clearance(gap - bound, normal).first_entry(f, end);
-        match entry {
-            Entry::At { f: next, .. } if bound_at(next) > bound => {
-                let bound = bound_at(next);
-                (path.clearance(gap - bound, normal).first_entry(f, end), bound)
-            }
-            _ => (entry, bound),
-        }
-    };
-
+    let bound_at = |f: f64| query.bound_at(f);
     if let Some((gap, normal)) =
         face_plane(asked, ball, f).filter(|(gap, n)| path.clearance(*gap, n).at(f) > 2.0 * bound_at(f))
     {
         *rounds += 1;
-        match meets(gap, &normal, f).0 {
+        match query.meets(gap, &normal, f).0 {
             Entry::Never => return Contact::Miss,
             Entry::At { f: next, .. } => f = next,
         }
     }
+    let mut looked = false;
     for _ in 0..MAX_ROUNDS {
         if f > to {
             return Contact::Miss;
@@ -168,20 +157,24 @@ pub(crate) fn contact_from(ball: &MovingBall, asked: &Asked, from: f64, to: f64,
         let (support, plane) = Support::near(ball, asked, f, 2.0 * bound);
         let (height, falling) = (plane.at(f), plane.rate(f) < 0.0);
         if height <= 2.0 * bound && falling {
-            return Contact::At {
-                feature: support.feature,
-                f: polish(ball, asked, (support, plane), f, end, bound, rounds),
-            };
+            return Contact::At { feature: support.feature, f: query.polish((support, plane), f, bound, rounds) };
         }
-        let (entry, bound) = meets(support.gap, &support.normal, f);
+        if !std::mem::replace(&mut looked, true) {
+            match query.look_ahead(support.feature, f, to, rounds) {
+                Ahead::Ends(contact) => return contact,
+                Ahead::FreeUntil(next) if next > f => {
+                    f = next;
+                    continue;
+                }
+                Ahead::FreeUntil(_) => {}
+            }
+        }
+        let (entry, bound) = query.meets(support.gap, &support.normal, f);
         let Entry::At { f: next, .. } = entry else {
             return Contact::Miss;
         };
         if (height <= 2.0 * bound && falling) || next - f <= 2.0 * UNIT_ROUNDOFF * f {
-            return Contact::At {
-                feature: support.feature,
-                f: polish(ball, asked, (support, plane), f, end, bound, rounds),
-            };
+            return Contact::At { feature: support.feature, f: query.polish((support, plane), f, bound, rounds) };
         }
         f = next;
     }
@@ -189,6 +182,65 @@ pub(crate) fn contact_from(ball: &MovingBall, asked: &Asked, from: f64, to: f64,
         return Contact::Miss;
     }
     Contact::At { f, feature: Support::at(ball, asked, f).feature }
+}
+
+/// A ball asked for its contact with a triangle.
+struct Query<'a> {
+    ball: &'a MovingBall<'a>,
+    asked: &'a Asked,
+    /// How far the triangle reaches from the start of the path, or the radius.
+    size: f64,
+    /// Planes are met on the whole path: a contact where the search ends is decided as one before it.
+    end: f64,
+}
+
+impl<'a> Query<'a> {
+    fn new(ball: &'a MovingBall<'a>, asked: &'a Asked, to: f64) -> Self {
+        let size = asked.corners().iter().map(amax).fold(ball.radius, largest);
+        Self { ball, asked, size, end: to.max(1.0) }
+    }
+
+    #[inline]
+    fn bound_at(&self, f: f64) -> f64 {
+        contact_bound(self.size + self.ball.path.reach(f))
+    }
+
+    /// Where after `f` the ball meets a plane, and the bound that was taken off: never late, since the plane is moved towards the ball by the bound that
+    /// holds where the path meets it.
+    #[inline]
+    fn meets(&self, gap: f64, normal: &Vector3<f64>, f: f64) -> (Entry, f64) {
+        let bound = 2.0 * self.bound_at(f);
+        let entry_by = |bound: f64| self.ball.path.clearance(gap - bound, normal).first_entry(f, self.end);
+        let entry = entry_by(bound);
+        match entry {
+            Entry::At { f: next, .. } if self.bound_at(next) > bound => {
+                let bound = self.bound_at(next);
+                (entry_by(bound), bound)
+            }
+            _ => (entry, bound),
+        }
+    }
+
+    /// From `f`, where the ball touches to within the bound, to where it touches: support planes again, now where they are. The triangle
+    /// is behind them all the same, so this ends at the contact to the rounding of the planes: on a face at once, at an edge or a vertex in
+    /// a step or two of Newton's method.
+    fn polish(&self, (support, plane): (Support, Clearance), f: f64, bound: f64, rounds: &mut u64) -> f64 {
+        let (mut f, mut feature, mut plane) = (f, support.feature, plane);
+        for _ in 0..MAX_POLISH {
+            let Entry::At { f: next, .. } = plane.first_entry(f, self.end) else {
+                break;
+            };
+            let arrived = next - f <= 2.0 * UNIT_ROUNDOFF * f || feature == Feature::Face;
+            f = next;
+            if arrived {
+                break;
+            }
+            *rounds += 1;
+            let (support, now) = Support::near(self.ball, self.asked, f, 2.0 * bound);
+            (feature, plane) = (support.feature, now);
+        }
+        f
+    }
 }
 
 /// The distance between the ball at the start and the plane of the triangle, seen from the side the ball is on at `f`, and the normal
@@ -252,34 +304,6 @@ fn farthest_along(corners: &[Vector3<f64>; 3], normal: &Vector3<f64>) -> f64 {
 
 /// Support planes looked at to polish a contact: from within its bound, a graze comes nearer by a factor of 4 with each.
 const MAX_POLISH: u32 = 8;
-
-/// From `f`, where the ball touches to within the bound, to where it touches: support planes again, now where they are. The triangle
-/// is behind them all the same, so this ends at the contact to the rounding of the planes: on a face at once, at an edge or a vertex in
-/// a step or two of Newton's method.
-fn polish(
-    ball: &MovingBall,
-    asked: &Asked,
-    met: (Support, Clearance),
-    f: f64,
-    to: f64,
-    bound: f64,
-    rounds: &mut u64,
-) -> f64 {
-    let (mut f, (mut support, mut plane)) = (f, met);
-    for _ in 0..MAX_POLISH {
-        let Entry::At { f: next, .. } = plane.first_entry(f, to) else {
-            break;
-        };
-        let arrived = next - f <= 2.0 * UNIT_ROUNDOFF * f || support.feature == Feature::Face;
-        f = next;
-        if arrived {
-            break;
-        }
-        *rounds += 1;
-        (support, plane) = Support::near(ball, asked, f, 2.0 * bound);
-    }
-    f
-}
 
 /// Where to look when the centre lies on the triangle: across the face, to the side the ball moves to.
 fn escape_direction(corners: &[Vector3<f64>; 3], path: &Path, f: f64) -> Vector3<f64> {
