@@ -4,8 +4,8 @@ use carom_dynamics::body::Ball;
 use carom_dynamics::effects::drag::Drag;
 use carom_dynamics::effects::friction::Friction;
 use carom_dynamics::effects::grip::Grip;
-use carom_dynamics::events::{Bound, Event, EventKind};
-use carom_geometry::rounding::UNIT_ROUNDOFF;
+use carom_dynamics::events::{Bound, Ending, Event, EventKind};
+use carom_geometry::rounding::{UNIT_ROUNDOFF, point_radius};
 use carom_tests::data::{csv, number};
 use carom_tests::oracle::{Table, Worst};
 use carom_tests::stage::{Run, Stage, coulomb, rough, smooth};
@@ -150,4 +150,33 @@ fn r26_what_no_equation_was_solved_for_has_no_bound() {
     let run = air.thing([0.0; 3], [1.0, 0.0, 0.0], 0.0, Some(1.0)).run();
     let rest = run.events(EventKind::Rest);
     assert!(rest.len() == 1 && rest[0].bound.is_none(), "{:?}", run.kinds());
+}
+
+#[test]
+fn r15_a_point_that_starts_on_a_table_lies_on_it_however_that_is_wound() {
+    let corners = [[0.5, -1.0, 0.0], [0.5, 1.0, 0.0], [-1.0, 1.0, 0.0], [-1.0, -1.0, 0.0]];
+    let wound = [corners, [corners[3], corners[2], corners[1], corners[0]]];
+    for table in wound {
+        for friction in [Friction::None, coulomb(0.25)] {
+            for v in [[0.0, 0.0, 0.0], [1.9, 0.0, 0.0], [3.0, 0.1, 0.0], [-12.3, 0.5, 0.0]] {
+                let stage = Stage::new(2.0).down(9.81).polygon("table", rough(0.5, friction), &table);
+                let run = stage.ball([0.0; 3], v, 0.0).run();
+                let name = format!("{v:?} under {friction:?}: {:?}", run.kinds());
+                assert_eq!(run.outcome.ending, Ending::Completed, "{name}");
+                let event = run.trajectory.events.first().unwrap_or_else(|| panic!("{name}"));
+                assert_eq!((event.time, event.normal), (0.0, Vector3::z()), "{name}");
+                assert!(event.position.coords.norm() <= point_radius(2.0), "{name}: {}", event.position);
+                let leaves = v[0] != 0.0;
+                assert_eq!(run.events(EventKind::Leave).len(), usize::from(leaves), "{name}");
+                let falls = run.outcome.state.position.z < -1.0;
+                assert_eq!(falls, leaves, "{name}: {}", run.outcome.state.position);
+            }
+        }
+        // What moves through it from there does, and what moves off it is not held.
+        for (g, v, z) in [(0.0, -1.0, -2.0), (0.0, 1.0, 2.0), (1.0, -1.0, -4.0)] {
+            let stage = Stage::new(2.0).down(g).polygon("table", smooth(0.5), &table);
+            let run = stage.ball([0.0; 3], [0.0, 0.0, v], 0.0).run();
+            assert!((run.outcome.state.position.z - z).abs() <= 2.0 * point_radius(2.0) && run.kinds().is_empty());
+        }
+    }
 }

@@ -265,6 +265,31 @@ impl<'a> Obstacles<'a> {
         contacts.sort_by(|a, b| self.order(a, b));
     }
 
+    /// Where a point that starts in `state` with acceleration `a` is clear of the faces it lies on: off them by the radius that it has there, on the side
+    /// to which it moves or, where it moves along them to rounding, from which it is pressed. Which way a face is wound is of no matter.
+    pub fn clear_of_faces(
+        &self,
+        state: &State,
+        a: &Vector3<f64>,
+        tolerance: f64,
+        counters: &mut Counters,
+    ) -> Point3<f64> {
+        let State { mut position, velocity } = *state;
+        for contact in self.touching(&position, &velocity, tolerance, None, counters) {
+            let Some(gap) = self.gap(&contact, &position).filter(|_| self.bend(&contact) == Bend::Flat) else {
+                continue;
+            };
+            // Of a face, the height is never below 0: it is seen from where the point is.
+            let height = gap + self.mesh_radius;
+            let n = contact.normal;
+            let along = contact.rate.abs() <= rate_rounding(velocity.norm());
+            let heading = if along { -n.dot(a) } else { contact.rate };
+            let side = if height <= tolerance && heading < 0.0 { -1.0 } else { 1.0 };
+            position += n * (side * self.mesh_radius - height);
+        }
+        position
+    }
+
     /// The order of contacts: by what they are and not by how they are numbered, so that the order of surfaces and faces does not matter.
     pub fn order(&self, a: &Contact, b: &Contact) -> Ordering {
         let rank = |c: &Contact| self.plan.surfaces[c.surface].rank;

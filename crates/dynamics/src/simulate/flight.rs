@@ -93,6 +93,10 @@ impl<O: Observer> Walk<'_, O> {
     /// At the start: what the ball lies on or moves along, as nearly as its position tells, it is in contact with.
     pub(super) fn begin(&mut self) {
         let tolerance = self.touch_tolerance(0.0);
+        if self.plan.radius_at_meshes(self.forces.ball) > self.forces.ball.radius() && !self.plan.meshes.is_empty() {
+            let a = self.forces.acceleration(&self.state, &mut self.counters);
+            self.state.position = self.obstacles.clear_of_faces(&self.state, &a, tolerance, &mut self.counters);
+        }
         let State { position, velocity } = self.state;
         let mut contacts = self.obstacles.touching(&position, &velocity, tolerance, None, &mut self.counters);
         let rounding = rate_rounding(velocity.norm());
