@@ -35,7 +35,7 @@ pub fn one(places: &Places, family: &Family, seed: u64) -> Report {
     let unit = (family.unit)(places, seed);
     let plan = unit.stage.plan();
     let ball = &plan.balls()[0];
-    let mut watch = Watch::new(&unit);
+    let mut watch = Watch::new(&unit, &plan);
     let name = format!("{} {seed}", family.name);
     let outcome = simulate_within(&plan, ball, &mut watch, STRETCHES);
     let mut report = watch.finish(outcome.as_ref().ok());

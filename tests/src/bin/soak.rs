@@ -59,7 +59,7 @@ fn bounce(bounces: u64, only: Option<&str>) -> bool {
     }
     row("all", &all, began);
     println!(
-        "\nDeepest and most gained as a part of what rounding may take or give; a stall is events in a row without time passing, steps are those from one event to the next."
+        "\nDeepest and most gained as a part of what rounding, and the rest length where bouncing has ended, may take or give; a stall is events in a row without time passing, steps are those from one event to the next."
     );
     all.is_sound()
 }

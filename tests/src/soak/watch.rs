@@ -9,6 +9,7 @@ use crate::world::U;
 use carom_dynamics::body::State;
 use carom_dynamics::events::{Event, EventKind, Outcome};
 use carom_dynamics::observer::{Observer, Segment};
+use carom_dynamics::plan::Plan;
 use carom_dynamics::tolerance::time_resolution;
 use nalgebra::{Point3, Vector3};
 use std::sync::Arc;
@@ -91,6 +92,9 @@ pub(super) struct Watch {
     gravity: Vector3<f64>,
     /// The energy that gains are measured against, in J/kg.
     scale: f64,
+    /// The energy that the rest length is worth, which counts once bouncing has ended.
+    at_rest: f64,
+    settled: bool,
     lowest: f64,
     gained: bool,
     /// Since when no time has passed, in s, and the events since.
@@ -100,7 +104,7 @@ pub(super) struct Watch {
 }
 
 impl Watch {
-    pub fn new(unit: &Unit) -> Self {
+    pub fn new(unit: &Unit, plan: &Plan) -> Self {
         let ball = &unit.stage.0.balls[0];
         let start = ball.start();
         let gravity = unit.stage.0.gravity.map_or(Vector3::zeros(), |g| g.acceleration());
@@ -114,6 +118,9 @@ impl Watch {
             radius: ball.radius(),
             gravity,
             scale: 0.5 * start.velocity.norm_squared() + gravity.norm() * farthest,
+            // What stops does so within that length of where it should.
+            at_rest: gravity.norm() * plan.rest().at(0.0).distance,
+            settled: false,
             lowest: 0.0,
             gained: false,
             still: (0.0, 0),
@@ -129,7 +136,8 @@ impl Watch {
     }
 
     fn see_energy(&mut self, now: f64, time: f64) {
-        let allowed = 4.0 * (self.report.impacts + 16) as f64 * U * self.scale;
+        let rounding = 4.0 * (self.report.impacts + 16) as f64 * U * self.scale;
+        let allowed = rounding + if self.settled { self.at_rest } else { 0.0 };
         let gain = (now - self.lowest) / allowed;
         self.lowest = self.lowest.min(now);
         self.report.most_gained = self.report.most_gained.max(gain);
@@ -176,6 +184,7 @@ impl Observer for Watch {
         }
         self.still.1 += 1;
         self.report.stall = self.report.stall.max(self.still.1);
+        self.settled |= e.kind == EventKind::Slide;
         if e.kind == EventKind::Impact {
             self.report.impacts += 1;
             self.see_energy(self.energy(&State { position: e.position, velocity: e.velocity }), e.time);
