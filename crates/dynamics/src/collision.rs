@@ -53,6 +53,14 @@ impl FacingPlane {
     }
 }
 
+/// Whether a centre that starts on a plane of normal `n`, with acceleration `a`, is behind it: on the side it moves to or, where it moves along the plane
+/// to rounding, on the side it is pressed from.
+fn is_behind(n: &Vector3<f64>, state: &State, a: &Vector3<f64>) -> bool {
+    let heading = n.dot(&state.velocity);
+    let along = heading.abs() <= rate_rounding(state.velocity.norm());
+    (if along { -n.dot(a) } else { heading }) < 0.0
+}
+
 /// One ball among the surfaces of a plan.
 #[derive(Debug, Clone)]
 pub struct Obstacles<'a> {
@@ -70,14 +78,9 @@ impl<'a> Obstacles<'a> {
     pub fn new(plan: &'a Plan, radius: f64, state: &State, a: &Vector3<f64>) -> Self {
         let side = |plane: &carom_geometry::plane::Plane| {
             let n = plane.normal();
-            // A centre on the plane is on the side it moves to, or else, where it moves along the plane to rounding, on the side it
-            // is pressed from.
-            plane.side_of(&state.position).unwrap_or_else(|| {
-                let heading = n.dot(&state.velocity);
-                let along = heading.abs() <= rate_rounding(state.velocity.norm());
-                let heading = if along { -n.dot(a) } else { heading };
-                if heading < 0.0 { Side::Negative } else { Side::Positive }
-            })
+            plane
+                .side_of(&state.position)
+                .unwrap_or_else(|| if is_behind(&n, state, a) { Side::Negative } else { Side::Positive })
         };
         let facing = |(surface, plane): &(usize, carom_geometry::plane::Plane)| {
             let normal = plane.normal().into_inner() * side(plane).sign();
@@ -266,7 +269,7 @@ impl<'a> Obstacles<'a> {
     }
 
     /// Where a point that starts in `state` with acceleration `a` is clear of the faces it lies on: off them by the radius that it has there, on the side
-    /// to which it moves or, where it moves along them to rounding, from which it is pressed. Which way a face is wound is of no matter.
+    /// that [`is_behind`] tells. Which way a face is wound is of no matter.
     pub fn clear_of_faces(
         &self,
         state: &State,
@@ -275,17 +278,13 @@ impl<'a> Obstacles<'a> {
         counters: &mut Counters,
     ) -> Point3<f64> {
         let State { mut position, velocity } = *state;
-        for contact in self.touching(&position, &velocity, tolerance, None, counters) {
-            let Some(gap) = self.gap(&contact, &position).filter(|_| self.bend(&contact) == Bend::Flat) else {
-                continue;
-            };
+        let touched = self.touching(&position, &velocity, tolerance, None, counters);
+        for contact in touched.iter().filter(|c| c.site.is_some() && self.bend(c) == Bend::Flat) {
+            let Some(gap) = self.gap(contact, &position) else { continue };
             // Of a face, the height is never below 0: it is seen from where the point is.
             let height = gap + self.mesh_radius;
-            let n = contact.normal;
-            let along = contact.rate.abs() <= rate_rounding(velocity.norm());
-            let heading = if along { -n.dot(a) } else { contact.rate };
-            let side = if height <= tolerance && heading < 0.0 { -1.0 } else { 1.0 };
-            position += n * (side * self.mesh_radius - height);
+            let side = if height <= tolerance && is_behind(&contact.normal, state, a) { -1.0 } else { 1.0 };
+            position += contact.normal * (side * self.mesh_radius - height);
         }
         position
     }

@@ -52,7 +52,7 @@ fn respond_to_one(
     // A rounded unit normal is off by the same u at each of a million bounces: divided by its square, it is not.
     let square = n.norm_squared();
     let v_t = v - n * (n.dot(&v) / square);
-    let rebound = c_r * closing;
+    let rebound = material.restitution.rebound(closing);
     let friction = &material.friction;
     let mut after = slowed(friction, v_t, closing, c_r, counters) + n * (rebound / square);
     // Rounding must not gain energy; nor lose it where nothing does.
