@@ -69,13 +69,16 @@ impl Adaptive {
     ) -> Step {
         let tolerance = self.tolerance.max(noise);
         let mut h = self.next.min(remaining);
+        // A step that is cut short tells nothing against the length that was right before; it may even be of no length at all.
+        let mut known = if h < self.next { self.next } else { 0.0 };
         for _ in 0..MAX_HALVINGS {
             let (step, error) = within(tolerance, state, h, &mut acceleration);
             if error <= 1.0 {
-                self.next = if error <= DOUBLE_BELOW { 2.0 * h } else { h };
+                self.next = known.max(if error <= DOUBLE_BELOW { 2.0 * h } else { h });
                 return step;
             }
             h *= 0.5;
+            known = 0.0;
         }
         self.next = h;
         within(tolerance, state, h, &mut acceleration).0
