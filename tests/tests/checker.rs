@@ -60,13 +60,16 @@ fn r12_balls_in_boxes_near_and_far_from_the_origin() {
 /// What the hunt has found and what is mended: each once ended too soon, hung, stuck, gained energy or went through.
 #[test]
 fn r28_what_once_went_wrong_stays_right() {
-    let found: [(&str, &[u64]); 4] = [
-        // Points in small hollows of the cow; settling in the air; the dense output of a slide around an edge.
-        ("spot", &[467, 1022, 2306, 2492, 2900, 999, 1458, 1789, 2936]),
+    let found: [(&str, &[u64]); 6] = [
+        // Points in small hollows of the cow; settling in the air; the dense output of a slide around an edge; steps of no length after one of no length.
+        ("spot", &[467, 1022, 2306, 2492, 2900, 999, 1458, 1789, 2936, 854, 867, 892]),
+        ("jacksboro", &[52, 639, 916]),
+        // Points that bounce and slide along the border of a wall, and must come back to it.
+        ("box", &[112, 546, 708, 714]),
         // Gliding in a groove that nothing presses; settling in the air.
         ("bunny", &[10450, 20106]),
-        // A fold so shallow that three faces were held at once.
-        ("terrain", &[10079]),
+        // A fold so shallow that three faces were held at once; steps of no length.
+        ("terrain", &[10079, 916]),
         // Elastic walls at the end of rails.
         ("wedge", &[281, 697, 1368, 1372, 2009, 2230, 11041]),
     ];

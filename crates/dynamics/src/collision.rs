@@ -9,7 +9,7 @@ use crate::contacts::{Contact, Contacts, MAX_CONTACTS, PerContact};
 use crate::counters::Counters;
 use crate::integrators::Step;
 use crate::plan::Plan;
-use crate::tolerance::{merge_angle_squared, rate_rounding, touch_distance};
+use crate::tolerance::{merge_angle_squared, rate_rounding, touch_breadth, touch_distance};
 use carom_geometry::bounds::amax;
 use carom_geometry::clearance::Entry;
 use carom_geometry::contact::{Hold, MovingBall};
@@ -115,9 +115,11 @@ impl<'a> Obstacles<'a> {
         counters: &mut Counters,
     ) -> Option<(f64, RegionBound)> {
         let mut first: Option<(f64, RegionBound)> = None;
-        let slack = touch_distance(self.plan.farthest + amax(&step.path.start().coords), 0.0);
+        let rounding = touch_distance(self.plan.farthest + amax(&step.path.start().coords), 0.0);
         for bound in self.mesh(contact.surface)?.region(contact.site?) {
             counters.clearances += 1;
+            let hollow = matches!(bound.next, Site::Edge { face, edge } if self.is_hollow(contact, face, edge));
+            let slack = if hollow { touch_breadth(rounding, self.mesh_radius) } else { rounding };
             if let Entry::At { f, .. } = slides_over(step, &bound, from, slack)
                 && first.is_none_or(|(best, _)| f < best)
             {

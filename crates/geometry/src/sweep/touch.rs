@@ -83,7 +83,12 @@ impl Mesh {
     /// None where the centre lies on it.
     pub fn nearest_of(&self, face: u32, centre: &Point3<f64>) -> Option<Touch> {
         let closest = Asked::new(self.triangle_from(face, centre)).closest(&Vector3::zeros());
-        closest.offset.try_normalize(0.0).map(|normal| Touch { site: self.site(face, closest.feature), normal })
+        let site = self.site(face, closest.feature);
+        let normal = match site {
+            Site::Face(face) => self.facing(face, &closest.offset),
+            _ => closest.offset.try_normalize(0.0),
+        };
+        normal.map(|normal| Touch { site, normal })
     }
 
     /// Whether the fold at `edge` of `face` is hollow on the side that `away` points to, and `away` at least `height` above the face.
