@@ -14,6 +14,7 @@ use carom_geometry::bounds::amax;
 use carom_geometry::clearance::Entry;
 use carom_geometry::contact::{Hold, MovingBall};
 use carom_geometry::mesh::{Fold, Mesh};
+use carom_geometry::order::by_size;
 use carom_geometry::plane::Side;
 use carom_geometry::rounding::contact_doubt;
 use carom_geometry::site::{Bend, RegionBound, Site};
@@ -294,8 +295,7 @@ impl<'a> Obstacles<'a> {
     /// The order of contacts: by what they are and not by how they are numbered, so that the order of surfaces and faces does not matter.
     pub fn order(&self, a: &Contact, b: &Contact) -> Ordering {
         let rank = |c: &Contact| self.plan.surfaces[c.surface].rank;
-        let normals = a.normal.iter().zip(b.normal.iter()).map(|(a, b)| a.total_cmp(b));
-        rank(a).cmp(&rank(b)).then(normals.fold(Ordering::Equal, Ordering::then)).then_with(|| a.site.cmp(&b.site))
+        rank(a).cmp(&rank(b)).then_with(|| by_size(&a.normal, &b.normal)).then_with(|| a.site.cmp(&b.site))
     }
 
     /// The distance that is left between the ball at `position` and what it is in contact with.
