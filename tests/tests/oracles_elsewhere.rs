@@ -112,7 +112,7 @@ fn r12_a_point_inside_a_circle_has_the_hits_of_its_tangents() {
             let lost = f64::mul_add(-2.0 * f64::from(k), alpha, -whole);
             let angle = theta0 + whole;
             let lost = lost + ((theta0 - (angle - whole)) + (whole - (angle - (angle - whole))));
-            let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
+            let sign = if k.is_multiple_of(2) { 1.0 } else { -1.0 };
             Vector3::new(angle.cos() - lost * angle.sin(), angle.sin() + lost * angle.cos(), 0.0) * sign
         };
         // All tangents lie outside of the circle: the chords of the hits touch none but their own.
