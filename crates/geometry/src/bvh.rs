@@ -2,12 +2,18 @@
 
 mod build;
 mod frame;
+mod leaves;
+mod prism;
 
 use frame::{Frame, LocalSegment};
+pub(crate) use leaves::Seen;
+use leaves::{Boxes, Faces, Leaves, Sheared};
 use multiversion::multiversion;
 use nalgebra::Point3;
+use prism::Prism;
 
 use crate::bounds::Aabb;
+use crate::shear::Shear;
 use wide::f32x8;
 
 /// Children of a node: two SSE registers, one AVX register.
@@ -55,7 +61,7 @@ impl Node {
     }
 }
 
-/// A child of a node: the index of a node, or `LEAF`, how many items less one, and the first of them.
+/// A child of a node: the index of a node, or `LEAF`, a count from 1 to 4 less one, and a place among the leaves.
 #[derive(Debug, Clone, Copy, Default)]
 struct Child(u32);
 
@@ -69,16 +75,22 @@ impl Child {
         Self(Self::LEAF | ((count as u32 - 1) << Self::COUNT_SHIFT) | start as u32)
     }
 
-    /// The same child after so many more nodes before it.
-    fn after(self, nodes: u32) -> Self {
-        if self.0 & Self::LEAF == 0 { Self(self.0 + nodes) } else { self }
+    #[inline(always)]
+    fn is_leaf(self) -> bool {
+        self.0 & Self::LEAF != 0
     }
 
-    /// The places of its items, unless it is a node.
-    fn items(self) -> Option<std::ops::Range<usize>> {
+    /// The same child after so many more nodes and units of leaves before it.
+    fn after(self, nodes: u32, units: u32) -> Self {
+        Self(self.0 + if self.is_leaf() { units } else { nodes })
+    }
+
+    /// The place of a leaf, and from there on its count.
+    #[inline(always)]
+    fn range(self) -> std::ops::Range<usize> {
         let start = (self.0 & (Self::MOST_ITEMS as u32 - 1)) as usize;
         let count = ((self.0 >> Self::COUNT_SHIFT) & 3) as usize + 1;
-        (self.0 & Self::LEAF != 0).then_some(start..start + count)
+        start..start + count
     }
 }
 
@@ -117,8 +129,9 @@ pub struct Bvh {
     bounds: Aabb,
     frame: Frame,
     nodes: Vec<Node>,
-    /// Item numbers in the order of the leaves.
-    items: Vec<u32>,
+    leaves: Leaves,
+    /// How many items there are.
+    len: usize,
     /// The most entries a traversal can have pending.
     stack: usize,
 }
@@ -130,12 +143,20 @@ impl Bvh {
     /// Takes time n log n, on all cores, and is the same tree on however many. Splits by the surface area heuristic over bins (Wald 2007, "On fast construction of
     /// SAH-based bounding volume hierarchies"), and by the median where that would get too deep.
     pub fn build(boxes: &[Aabb]) -> Self {
-        Self::build_by(boxes.len(), |i| boxes[i])
+        build::build(boxes.len(), &Boxes(|i| boxes[i]))
     }
 
-    /// The tree over `count` boxes that are computed as often as they are needed, and never stored.
-    pub(crate) fn build_by(count: usize, box_of: impl Fn(usize) -> Aabb + Sync) -> Self {
-        build::build(count, box_of)
+    /// The tree over `count` faces with these boxes and corners, which are computed as often as they are needed. A face whose box is empty is in no answer.
+    pub(crate) fn of_faces(
+        count: usize,
+        bounds: impl Fn(usize) -> Aabb + Sync,
+        corners: impl Fn(u32) -> [Point3<f64>; 3] + Sync,
+    ) -> Self {
+        if count <= leaves::MOST_FACES {
+            build::build(count, &Faces { bounds, corners })
+        } else {
+            build::build(count, &Boxes(bounds))
+        }
     }
 
     /// The least box around all items, exactly.
@@ -145,17 +166,17 @@ impl Bvh {
 
     /// How many items it holds.
     pub fn len(&self) -> usize {
-        self.items.len()
+        self.len
     }
 
     /// Whether it holds nothing.
     pub fn is_empty(&self) -> bool {
-        self.items.is_empty()
+        self.len == 0
     }
 
     /// The memory it takes, in bytes.
     pub fn bytes(&self) -> usize {
-        self.nodes.len() * size_of::<Node>() + self.items.len() * size_of::<u32>()
+        self.nodes.len() * size_of::<Node>() + self.leaves.bytes()
     }
 
     /// Shows `hit` every item whose box meets `segment`, and some near misses, nearly front to back; returns the number
@@ -165,8 +186,29 @@ impl Bvh {
     /// segment enters later are left out. The limit never grows again; return infinity to set none. A segment with a
     /// coordinate that is not finite is shown everything.
     pub fn visit(&self, segment: &FatSegment, mut hit: impl FnMut(u32) -> f64) -> u64 {
+        self.look_along(segment, &Shear::new(&segment.from, &segment.to), |seen| hit(seen.item))
+    }
+
+    /// [`visit`](Self::visit) with what is known of the items; `shear` is that of the segment.
+    #[inline]
+    pub(crate) fn look_along(
+        &self,
+        segment: &FatSegment,
+        shear: &Shear,
+        mut hit: impl FnMut(Seen<'_>) -> f64,
+    ) -> u64 {
         let Some(local) = self.frame.segment(segment, &self.bounds) else { return 0 };
-        self.with_stack(|stack| walk(&self.nodes, &self.items, &local, stack, &mut hit))
+        self.with_stack(|stack| match &self.leaves {
+            Leaves::Boxes(items) => walk(&self.nodes, &local, stack, &mut |leaf: Child| {
+                show_all(items, leaf, &mut hit)
+            }),
+            Leaves::Faces(units) => {
+                let (prism, mut sheared) = (Prism::around(segment, shear, &self.bounds), Sheared::default());
+                walk(&self.nodes, &local, stack, &mut |leaf: Child| {
+                    leaves::show(units, leaf, &prism, &mut sheared, &mut hit)
+                })
+            }
+        })
     }
 
     /// Shows `hit` every item whose box meets `query`, and some near misses; returns the number of nodes looked at.
@@ -175,13 +217,21 @@ impl Bvh {
             return 0;
         }
         let (lo, hi) = self.frame.outer_box(query);
+        let (prism, mut sheared) = (Prism::of_box(query), Sheared::default());
+        let mut hit = |seen: Seen<'_>| {
+            hit(seen.item);
+            f64::INFINITY
+        };
         self.with_stack(|stack| {
             let (mut pending, mut visited) = (1, 0);
             while pending > 0 {
                 pending -= 1;
                 let child = stack[pending].child();
-                if let Some(items) = child.items() {
-                    self.items[items].iter().for_each(|&item| hit(item));
+                if child.is_leaf() {
+                    match &self.leaves {
+                        Leaves::Boxes(items) => _ = show_all(items, child, &mut hit),
+                        Leaves::Faces(units) => _ = leaves::show(units, child, &prism, &mut sheared, &mut hit),
+                    }
                     continue;
                 }
                 let Some(node) = self.nodes.get(child.0 as usize) else { continue };
@@ -206,40 +256,46 @@ impl Bvh {
     }
 }
 
+/// Shows `hit` the items of a leaf; returns the least that it returned.
+#[inline(always)]
+fn show_all(items: &[u32], leaf: Child, hit: &mut impl FnMut(Seen<'_>) -> f64) -> f64 {
+    items[leaf.range()].iter().fold(f64::INFINITY, |limit, &item| {
+        let s = hit(Seen { item, corners: None });
+        if s < limit { s } else { limit }
+    })
+}
+
 /// [`walk_plainly`], compiled once more for processors with wider registers: by the same operations in the same order, which round alike.
 #[multiversion(targets("x86_64+avx2"))]
 fn walk(
     nodes: &[Node],
-    items: &[u32],
     segment: &LocalSegment,
     stack: &mut [Pending],
-    hit: &mut impl FnMut(u32) -> f64,
+    leaf: &mut impl FnMut(Child) -> f64,
 ) -> u64 {
-    walk_plainly(nodes, items, segment, stack, hit)
+    walk_plainly(nodes, segment, stack, leaf)
 }
 
-/// Goes through the nodes that the segment enters, and shows `hit` the items that are in them; returns how many nodes there were.
+/// Goes through the nodes that the segment enters, and shows `leaf` the leaves that are in them, which returns the limit it is
+/// given; returns how many nodes there were.
 #[inline(always)] // so that it is compiled with `walk`
 fn walk_plainly(
     nodes: &[Node],
-    items: &[u32],
     segment: &LocalSegment,
     stack: &mut [Pending],
-    hit: &mut impl FnMut(u32) -> f64,
+    leaf: &mut impl FnMut(Child) -> f64,
 ) -> u64 {
     let (mut pending, mut visited) = (0, 0);
-    // The limit that `hit` gave last, and the same in the part of the segment that is near the tree.
+    // The limit that `leaf` gave last, and the same in the part of the segment that is near the tree.
     let (mut last, mut limit) = (f64::INFINITY, 1.0_f32);
     let mut child = Child::default();
     loop {
-        if let Some(places) = child.items() {
-            for &item in &items[places] {
-                let s = hit(item);
-                if s < last {
-                    last = s;
-                    let until = segment.local_limit(s);
-                    limit = if until < limit { until } else { limit };
-                }
+        if child.is_leaf() {
+            let s = leaf(child);
+            if s < last {
+                last = s;
+                let until = segment.local_limit(s);
+                limit = if until < limit { until } else { limit };
             }
         } else if let Some(node) = nodes.get(child.0 as usize) {
             visited += 1;
