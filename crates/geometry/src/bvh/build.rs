@@ -1,5 +1,6 @@
 //! Building the tree: binned surface area heuristic, straight into wide nodes.
 
+use super::collapse::Cuts;
 use super::frame::Frame;
 use super::leaves::Content;
 use super::{Bvh, Child, Node, WIDTH};
@@ -17,7 +18,7 @@ const HEURISTIC_LEVELS: usize = 16;
 
 /// An item's box in the tree's coordinates, and its number in the fourth place of `lo`, where no coordinate is: half of a line of the cache.
 #[derive(Debug, Clone, Copy)]
-struct Item {
+pub(super) struct Item {
     bounds: Box32,
 }
 
@@ -34,7 +35,7 @@ impl Item {
 
 /// A box: its corners, each with a fourth number of no meaning.
 #[derive(Debug, Clone, Copy)]
-struct Box32 {
+pub(super) struct Box32 {
     lo: f32x4,
     hi: f32x4,
 }
@@ -71,26 +72,26 @@ impl Box32 {
 
     /// Half the surface, to which the chance of being met is proportional; -infinity or NaN never, 0 if empty.
     #[inline]
-    fn area(&self) -> f32 {
+    pub(super) fn area(&self) -> f32 {
         let [x, y, z] = self.sides();
         x * y + y * z + z * x
     }
 
     /// Sum of the sides, the measure where there is no surface.
     #[inline]
-    fn girth(&self) -> f32 {
+    pub(super) fn girth(&self) -> f32 {
         self.sides().iter().sum()
     }
 }
 
 /// A range of the items that becomes one child.
 #[derive(Debug, Clone, Copy)]
-struct Group {
+pub(super) struct Group {
     start: usize,
     end: usize,
-    bounds: Box32,
+    pub(super) bounds: Box32,
     /// Whether it fits into a leaf.
-    fits: bool,
+    pub(super) fits: bool,
 }
 
 impl Group {
@@ -137,6 +138,16 @@ pub(super) fn build<C: Content>(count: usize, content: &C) -> Bvh {
     }
 }
 
+impl Node {
+    fn set(&mut self, j: usize, child: Child, group: &Group) {
+        self.child[j] = child;
+        let (lo, hi) = (group.bounds.lo.to_array(), group.bounds.hi.to_array());
+        for (i, [least, largest]) in self.planes.iter_mut().enumerate() {
+            (least[j], largest[j]) = (lo[i], hi[i]);
+        }
+    }
+}
+
 /// A part of the tree: its nodes, the root first and counted from it, its leaves, and how many levels it goes down to from the top of the whole.
 struct Part<C: Content> {
     nodes: Vec<Node>,
@@ -160,36 +171,52 @@ impl<C: Content> Part<C> {
 
     /// Adds the node for `all` and what is below; returns its number.
     fn add(&mut self, content: &C, items: &mut [Item], all: Group, level: usize) -> u32 {
-        self.levels = self.levels.max(level);
+        if all.len() <= ON_ONE_CORE {
+            let cuts = Cuts::of(content, items, all);
+            return self.add_cuts(content, items, &cuts, cuts.root(), level);
+        }
         let (groups, count) = groups(content, items, all, level);
-        let number = self.nodes.len();
+        let number = self.add_node(level);
+        let mut below = Self::in_parallel(content, items, &groups[..count], level);
+        for (j, group) in groups[..count].iter().enumerate() {
+            let child = match below[j].take() {
+                Some(part) => Child(self.append(part)),
+                None => self.add_leaf(content, items, group),
+            };
+            self.nodes[number].set(j, child, group);
+        }
+        number as u32
+    }
+
+    /// Adds the node for a cut that is no leaf, or is all, and what is below.
+    fn add_cuts(&mut self, content: &C, items: &[Item], cuts: &Cuts, cut: usize, level: usize) -> u32 {
+        let number = self.add_node(level);
+        let (children, count) = cuts.children(cut);
+        for (j, &child) in children[..count].iter().enumerate() {
+            let group = cuts.group(child);
+            let child = if group.fits {
+                self.add_leaf(content, items, group)
+            } else {
+                Child(self.add_cuts(content, items, cuts, child, level + 1))
+            };
+            self.nodes[number].set(j, child, group);
+        }
+        number as u32
+    }
+
+    fn add_node(&mut self, level: usize) -> usize {
+        self.levels = self.levels.max(level);
         self.nodes.push(Node {
             planes: [[[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]]; 3],
             child: [Child::default(); WIDTH],
         });
-        let mut below = if all.len() > ON_ONE_CORE {
-            Self::in_parallel(content, items, &groups[..count], level)
-        } else {
-            std::array::from_fn(|_| None)
-        };
-        for (j, group) in groups[..count].iter().enumerate() {
-            let child = if group.fits {
-                let mut ids: SmallVec<[u32; 16]> = items[group.start..group.end].iter().map(Item::id).collect();
-                ids.sort_unstable();
-                content.store(&ids, &mut self.units)
-            } else if let Some(part) = below[j].take() {
-                Child(self.append(part))
-            } else {
-                Child(self.add(content, items, *group, level + 1))
-            };
-            let node = &mut self.nodes[number];
-            node.child[j] = child;
-            let (lo, hi) = (group.bounds.lo.to_array(), group.bounds.hi.to_array());
-            for (i, [least, largest]) in node.planes.iter_mut().enumerate() {
-                (least[j], largest[j]) = (lo[i], hi[i]);
-            }
-        }
-        number as u32
+        self.nodes.len() - 1
+    }
+
+    fn add_leaf(&mut self, content: &C, items: &[Item], group: &Group) -> Child {
+        let mut ids: SmallVec<[u32; 16]> = items[group.start..group.end].iter().map(Item::id).collect();
+        ids.sort_unstable();
+        content.store(&ids, &mut self.units)
     }
 
     /// The parts of the groups that get nodes, each on whatever core is free; the same ones as one after the other.
@@ -240,15 +267,19 @@ fn groups<C: Content>(content: &C, items: &mut [Item], all: Group, level: usize)
         else {
             break;
         };
-        let Group { start, end, bounds, .. } = groups[chosen];
-        let own = &mut items[start..end];
-        let cut = if by_count { None } else { best_cut(own, &bounds, C::LARGEST) };
-        let middle = start + if let Some(cut) = cut { cut.divide(own) } else { halve(own) };
-        groups[chosen] = Group::of(content, items, start, middle);
-        groups[count] = Group::of(content, items, middle, end);
+        [groups[chosen], groups[count]] = cut(content, items, &groups[chosen], by_count);
         count += 1;
     }
     (groups, count)
+}
+
+/// Cuts a group in two, by the heuristic or by count.
+pub(super) fn cut<C: Content>(content: &C, items: &mut [Item], group: &Group, by_count: bool) -> [Group; 2] {
+    let &Group { start, end, bounds, .. } = group;
+    let own = &mut items[start..end];
+    let cut = if by_count { None } else { best_cut(own, &bounds, C::LARGEST) };
+    let middle = start + if let Some(cut) = cut { cut.divide(own) } else { halve(own) };
+    [Group::of(content, items, start, middle), Group::of(content, items, middle, end)]
 }
 
 /// How the axes are cut into bins.
@@ -292,6 +323,7 @@ impl Cut {
 
 /// The cut with the least sum of measure times leaves, of up to `largest` items; `None` if all items are at one place.
 fn best_cut(items: &[Item], bounds: &Box32, largest: usize) -> Option<Cut> {
+    let largest = if largest == 16 { *KNOB.get_or_init(|| super::knob("LARGEST", 16)) } else { largest };
     let leaves = |count: usize| count.div_ceil(largest) as f32;
     let has_area = bounds.area() > 0.0;
     let measure = |b: &Box32| if has_area { b.area() } else { b.girth() };
@@ -351,3 +383,4 @@ fn halve(items: &mut [Item]) -> usize {
     });
     half
 }
+static KNOB: std::sync::OnceLock<usize> = std::sync::OnceLock::new();
