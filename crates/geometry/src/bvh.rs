@@ -3,13 +3,16 @@
 mod build;
 mod collapse;
 mod frame;
+mod lanes;
 mod leaves;
 mod prism;
 
 use frame::{Frame, LocalSegment};
 pub(crate) use leaves::Seen;
-use leaves::{Boxes, Faces, Leaves, Sheared};
+use lanes::Sheared;
+use leaves::{Boxes, Faces, Leaves, Show, ShowBoxes, ShowFaces, Unit};
 use multiversion::multiversion;
+use multiversion::target::match_target;
 use nalgebra::Point3;
 use prism::Prism;
 
@@ -33,12 +36,15 @@ pub struct FatSegment {
     pub radius: f64,
 }
 
+/// For each axis the least and the largest coordinate of each child of a node.
+type Planes = [[[f32; WIDTH]; 2]; 3];
+
 /// Eight boxes and what is in them, in arrays that one loop of vector instructions reads.
 #[derive(Debug, Clone)]
 #[repr(align(32))]
 struct Node {
     /// For each axis the least and the largest coordinate of each child; +infinity and -infinity where there is none.
-    planes: [[[f32; WIDTH]; 2]; 3],
+    planes: Planes,
     child: [Child; WIDTH],
 }
 
@@ -196,18 +202,14 @@ impl Bvh {
         &self,
         segment: &FatSegment,
         shear: &Shear,
-        mut hit: impl FnMut(Seen<'_>) -> f64,
+        hit: impl FnMut(Seen<'_>) -> f64,
     ) -> u64 {
         let Some(local) = self.frame.segment(segment, &self.bounds) else { return 0 };
         self.with_stack(|stack| match &self.leaves {
-            Leaves::Boxes(items) => walk(&self.nodes, &local, stack, &mut |leaf: Child| {
-                show_all(items, leaf, &mut hit)
-            }),
+            Leaves::Boxes(items) => walk(&self.nodes, &local, stack, &mut ShowBoxes { items, hit }),
             Leaves::Faces(units) => {
-                let (prism, mut sheared) = (Prism::around(segment, shear, &self.bounds), Sheared::default());
-                walk(&self.nodes, &local, stack, &mut |leaf: Child| {
-                    leaves::show(units, leaf, &prism, &mut sheared, &mut hit)
-                })
+                let (prism, sheared) = (Prism::around(segment, shear, &self.bounds), Sheared::default());
+                walk(&self.nodes, &local, stack, &mut ShowFaces { units, prism, sheared, hit })
             }
         })
     }
@@ -218,32 +220,16 @@ impl Bvh {
             return 0;
         }
         let (lo, hi) = self.frame.outer_box(query);
-        let (prism, mut sheared) = (Prism::of_box(query), Sheared::default());
-        let mut hit = |seen: Seen<'_>| {
+        let hit = |seen: Seen<'_>| {
             hit(seen.item);
             f64::INFINITY
         };
-        self.with_stack(|stack| {
-            let (mut pending, mut visited) = (1, 0);
-            while pending > 0 {
-                pending -= 1;
-                let child = stack[pending].child();
-                if child.is_leaf() {
-                    match &self.leaves {
-                        Leaves::Boxes(items) => _ = show_all(items, child, &mut hit),
-                        Leaves::Faces(units) => _ = leaves::show(units, child, &prism, &mut sheared, &mut hit),
-                    }
-                    continue;
-                }
-                let Some(node) = self.nodes.get(child.0 as usize) else { continue };
-                visited += 1;
-                let mut met = node.meets(&lo, &hi);
-                while met != 0 {
-                    stack[pending] = node.take(&mut met, &[0.0; WIDTH]);
-                    pending += 1;
-                }
+        self.with_stack(|stack| match &self.leaves {
+            Leaves::Boxes(items) => walk_box(&self.nodes, (&lo, &hi), stack, &mut ShowBoxes { items, hit }),
+            Leaves::Faces(units) => {
+                let (prism, sheared) = (Prism::of_box(query), Sheared::default());
+                walk_box(&self.nodes, (&lo, &hi), stack, &mut ShowFaces { units, prism, sheared, hit })
             }
-            visited
         })
     }
 
@@ -257,42 +243,65 @@ impl Bvh {
     }
 }
 
-/// Shows `hit` the items of a leaf; returns the least that it returned.
-#[inline(always)]
-fn show_all(items: &[u32], leaf: Child, hit: &mut impl FnMut(Seen<'_>) -> f64) -> f64 {
-    items[leaf.range()].iter().fold(f64::INFINITY, |limit, &item| {
-        let s = hit(Seen { item, corners: None });
-        if s < limit { s } else { limit }
-    })
+/// Goes through the nodes that meet the box from `lo` to `hi`, and shows the leaves that are in them; returns how many nodes there were.
+fn walk_box(nodes: &[Node], (lo, hi): (&[f32; 3], &[f32; 3]), stack: &mut [Pending], leaves: &mut impl Show) -> u64 {
+    let (mut pending, mut visited) = (1, 0);
+    while pending > 0 {
+        pending -= 1;
+        let child = stack[pending].child();
+        if child.is_leaf() {
+            leaves.show(child, lanes::narrow::screen);
+            continue;
+        }
+        let Some(node) = nodes.get(child.0 as usize) else { continue };
+        visited += 1;
+        let mut met = node.meets(lo, hi);
+        while met != 0 {
+            stack[pending] = node.take(&mut met, &[0.0; WIDTH]);
+            pending += 1;
+        }
+    }
+    visited
 }
 
-/// [`walk_plainly`], compiled once more for processors with wider registers: by the same operations in the same order, which round alike.
+/// [`walk_by`] the widest registers that the processor has: by the same operations in the same order, which round alike.
 #[multiversion(targets("x86_64+avx2"))]
-fn walk(
-    nodes: &[Node],
-    segment: &LocalSegment,
-    stack: &mut [Pending],
-    leaf: &mut impl FnMut(Child) -> f64,
-) -> u64 {
-    walk_plainly(nodes, segment, stack, leaf)
+fn walk(nodes: &[Node], segment: &LocalSegment, stack: &mut [Pending], leaves: &mut impl Show) -> u64 {
+    match_target! {
+        "x86_64+avx2" => walk_by(
+            nodes,
+            segment,
+            stack,
+            leaves,
+            |planes: &Planes, limit| lanes::avx2::entries(segment, planes, limit),
+            |leaf: &[Unit], prism: &Prism, sheared: &mut Sheared| lanes::avx2::screen(leaf, prism, sheared),
+        ),
+        _ => walk_narrow(nodes, segment, stack, leaves),
+    }
 }
 
-/// Goes through the nodes that the segment enters, and shows `leaf` the leaves that are in them, which returns the limit it is
-/// given; returns how many nodes there were.
+fn walk_narrow(nodes: &[Node], segment: &LocalSegment, stack: &mut [Pending], leaves: &mut impl Show) -> u64 {
+    let entries = |planes: &Planes, limit| lanes::narrow::entries(segment, planes, limit);
+    walk_by(nodes, segment, stack, leaves, entries, lanes::narrow::screen)
+}
+
+/// Goes through the nodes that the segment enters, and shows the leaves that are in them; returns how many nodes there were.
 #[inline(always)] // so that it is compiled with `walk`
-fn walk_plainly(
+fn walk_by(
     nodes: &[Node],
     segment: &LocalSegment,
     stack: &mut [Pending],
-    leaf: &mut impl FnMut(Child) -> f64,
+    leaves: &mut impl Show,
+    entries: impl Fn(&Planes, f32) -> ([f32; WIDTH], u32),
+    screen: impl Fn(&[Unit], &Prism, &mut Sheared) -> u32,
 ) -> u64 {
     let (mut pending, mut visited) = (0, 0);
-    // The limit that `leaf` gave last, and the same in the part of the segment that is near the tree.
+    // The limit that a leaf gave last, and the same in the part of the segment that is near the tree.
     let (mut last, mut limit) = (f64::INFINITY, 1.0_f32);
     let mut child = Child::default();
     loop {
         if child.is_leaf() {
-            let s = leaf(child);
+            let s = leaves.show(child, &screen);
             if s < last {
                 last = s;
                 let until = segment.local_limit(s);
@@ -300,12 +309,12 @@ fn walk_plainly(
             }
         } else if let Some(node) = nodes.get(child.0 as usize) {
             visited += 1;
-            let (entries, mut met) = segment.entries(&node.planes, limit);
+            let (entered, mut met) = entries(&node.planes, limit);
             if met != 0 {
                 let first = pending;
-                let mut nearest = node.take(&mut met, &entries);
+                let mut nearest = node.take(&mut met, &entered);
                 while met != 0 {
-                    let next = node.take(&mut met, &entries);
+                    let next = node.take(&mut met, &entered);
                     let farther = if next > nearest { next } else { nearest };
                     nearest = if next > nearest { nearest } else { next };
                     // The nearer the later, so that it is popped the sooner.

@@ -1,9 +1,8 @@
 //! The tree's own coordinates, and queries in them with room for every rounding.
 
-use super::{FatSegment, WIDTH};
+use super::FatSegment;
 use crate::bounds::{Aabb, largest};
 use crate::rounding::{UNIT_ROUNDOFF, gamma, segment_bound, segment_bound_f32};
-use wide::f32x8;
 
 /// A margin beyond this is so much larger than the tree, which has a half extent of 1, that no box can be told apart.
 const HOPELESS: f64 = 1048576.0;
@@ -29,10 +28,10 @@ pub(super) struct LocalSegment {
     end: f64,
     /// For each axis: whether the planes with the lower coordinates are met first, and the points from which the near and the far one are
     /// measured.
-    forward: [bool; 3],
-    near_from: [f32; 3],
-    far_from: [f32; 3],
-    inverse: [f32; 3],
+    pub(super) forward: [bool; 3],
+    pub(super) near_from: [f32; 3],
+    pub(super) far_from: [f32; 3],
+    pub(super) inverse: [f32; 3],
 }
 
 impl Frame {
@@ -151,21 +150,6 @@ impl LocalSegment {
             local.inverse[i] = direction / if size > LEAST_STEP { size } else { LEAST_STEP };
         }
         local
-    }
-
-    /// For each child a lower bound of where it is entered, in [0, 1], and a bit for each that is met up to `limit`.
-    #[inline(always)] // as a function of its own it would have the narrow registers
-    pub(super) fn entries(&self, planes: &[[[f32; WIDTH]; 2]; 3], limit: f32) -> ([f32; WIDTH], u32) {
-        let (mut entry, mut exit) = (f32x8::splat(0.0), f32x8::splat(limit));
-        for (i, sides) in planes.iter().enumerate() {
-            let forward = usize::from(self.forward[i]);
-            let (near, far) = (f32x8::new(sides[1 - forward]), f32x8::new(sides[forward]));
-            let inverse = f32x8::splat(self.inverse[i]);
-            // There are no NaN, which `max` and `min` would look for.
-            entry = entry.fast_max((near - f32x8::splat(self.near_from[i])) * inverse);
-            exit = exit.fast_min((far - f32x8::splat(self.far_from[i])) * inverse);
-        }
-        (entry.to_array(), entry.simd_le(exit).to_bitmask())
     }
 
     /// The caller's limit of s as one of this part, rounded up.

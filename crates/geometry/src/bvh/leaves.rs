@@ -2,20 +2,21 @@
 //! miss are found all at once.
 
 use super::Child;
+use super::lanes::Sheared;
 use super::prism::Prism;
 use crate::bounds::Aabb;
+use bytemuck::cast;
 use nalgebra::Point3;
 use smallvec::SmallVec;
-use wide::{f64x4, i16x8};
 
 /// The most corners, and the most faces, in a leaf: a bit of a u16 for each.
-const MOST: usize = 16;
+pub(super) const MOST: usize = 16;
 /// Units of a leaf that holds one face: its number, its corners, and which are its.
 const MOST_UNITS_OF_A_FACE: usize = 1 + MASK_UNITS + PAIR_UNITS * 2;
 /// Units of a word of 16 bits for each face.
-const MASK_UNITS: usize = 2;
+pub(super) const MASK_UNITS: usize = 2;
 /// Units of two points: their x, their y, their z.
-const PAIR_UNITS: usize = 3;
+pub(super) const PAIR_UNITS: usize = 3;
 /// Numbers of faces in a unit.
 const NUMBERS: usize = 4;
 /// Where the number of a face ends in its word, and the order of its corners begins.
@@ -99,28 +100,7 @@ pub(super) const MOST_FACES: usize = Child::MOST_ITEMS / MOST_UNITS_OF_A_FACE;
 ///
 /// The leaf that begins at unit k has there the corners of each of its faces as bits, then its points in pairs, and the numbers of its
 /// faces before k, backwards.
-#[derive(Debug, Clone, Copy, Default)]
-#[repr(align(16))]
-pub(super) struct Unit([u64; 2]);
-
-impl Unit {
-    fn coordinates(self) -> [f64; 2] {
-        self.0.map(f64::from_bits)
-    }
-
-    fn number(self, place: usize) -> u32 {
-        (self.0[place / 2 % 2] >> (place % 2 * 32)) as u32
-    }
-
-    fn masks(self) -> i16x8 {
-        let word = |place: usize| (self.0[place / 4] >> (place % 4 * 16)) as i16;
-        i16x8::new([word(0), word(1), word(2), word(3), word(4), word(5), word(6), word(7)])
-    }
-
-    fn mask(self, place: usize) -> u16 {
-        (self.0[place / 4 % 2] >> (place % 4 * 16)) as u16
-    }
-}
+pub(super) type Unit = [u64; 2];
 
 /// The points of the corners of faces, each once, and which of them each face has.
 #[derive(Default)]
@@ -160,20 +140,20 @@ impl<B: Fn(usize) -> Aabb + Sync, C: Fn(u32) -> [Point3<f64>; 3] + Sync> Content
     fn store(&self, items: &[u32], units: &mut Vec<Unit>) -> Child {
         let mut corners = Corners::default();
         items.iter().for_each(|&face| _ = corners.add(&(self.corners)(face)));
-        let mut numbers = [Unit::default(); MOST / NUMBERS];
-        let mut masks = [Unit::default(); MASK_UNITS];
+        let (mut numbers, mut masks) = ([0; MOST], [0; MOST]);
         for (j, (&face, places)) in items.iter().zip(&corners.of_faces).enumerate() {
-            let mask = places.iter().fold(0_u64, |mask, place| mask | 1 << place);
-            let word = u64::from(face | order(places) << ORDER_SHIFT);
-            numbers[j / NUMBERS].0[j / 2 % 2] |= word << (j % 2 * 32);
-            masks[j / 8].0[j / 4 % 2] |= mask << (j % 4 * 16);
+            let mask = places.iter().fold(0_u16, |mask, place| mask | 1 << place);
+            let word = face | order(places) << ORDER_SHIFT;
+            numbers[j] = word;
+            masks[j] = mask;
         }
+        let numbers: [Unit; MOST / NUMBERS] = cast(numbers);
         units.extend(numbers[..items.len().div_ceil(NUMBERS)].iter().rev());
         let start = units.len();
-        units.extend(masks);
+        units.extend(cast::<_, [Unit; MASK_UNITS]>(masks));
         for pair in corners.points.chunks(2) {
             let other = pair.last().copied().unwrap_or_default();
-            units.extend((0..3).map(|i| Unit([pair[0][i], other[i]])));
+            units.extend((0..3).map(|i| [pair[0][i], other[i]]));
         }
         Child::leaf(start, corners.points.len().div_ceil(4))
     }
@@ -195,25 +175,6 @@ fn order(places: &[usize; 3]) -> u32 {
     ORDERS.iter().position(is).filter(|_| distinct).unwrap_or(ORDERS.len()) as u32
 }
 
-/// The points of a leaf, as sheared for a query.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Sheared {
-    coordinates: [[f64; MOST]; 3],
-}
-
-impl Default for Sheared {
-    fn default() -> Self {
-        Self { coordinates: [[0.0; MOST]; 3] }
-    }
-}
-
-/// A leaf of which a query has seen the points.
-pub(super) struct Look<'a> {
-    units: &'a [Unit],
-    sheared: &'a Sheared,
-    start: usize,
-}
-
 /// A face, or an item of which only a box is known, that a query may meet.
 pub(crate) struct Seen<'a> {
     /// Its number.
@@ -224,7 +185,8 @@ pub(crate) struct Seen<'a> {
 
 /// The corners of a face that a query may meet.
 pub(crate) struct SeenCorners<'a> {
-    look: &'a Look<'a>,
+    points: &'a [Unit],
+    sheared: &'a Sheared,
     places: [usize; 3],
 }
 
@@ -233,97 +195,73 @@ impl SeenCorners<'_> {
     #[inline]
     pub(crate) fn points(&self) -> [Point3<f64>; 3] {
         self.places.map(|place| {
-            let first = self.look.start + MASK_UNITS + place / 2 * PAIR_UNITS;
-            let unit = |i: usize| self.look.units[first + i].coordinates()[place % 2];
-            Point3::new(unit(0), unit(1), unit(2))
+            let pair = &self.points[place / 2 * PAIR_UNITS..][..PAIR_UNITS];
+            Point3::from([0, 1, 2].map(|i| f64::from_bits(pair[i][place % 2])))
         })
     }
 
     /// Across and along the query's segment.
     #[inline]
     pub(crate) fn sheared(&self) -> [[f64; 3]; 3] {
-        let [next, last, along] = &self.look.sheared.coordinates;
+        let [next, last, along] = &self.sheared.coordinates;
         self.places.map(|place| [next[place % MOST], last[place % MOST], along[place % MOST]])
     }
 }
 
-/// Shears the points of a leaf; returns a bit for each face that is not certain to be off the prism.
-#[inline(always)] // as a function of its own it would have the narrow registers
-fn screen(units: &[Unit], start: usize, quads: usize, prism: &Prism, sheared: &mut Sheared) -> u32 {
-    let beyond = match prism.shear.axis {
-        0 => beyond::<0>(units, start, quads, prism, sheared),
-        1 => beyond::<1>(units, start, quads, prism, sheared),
-        _ => beyond::<2>(units, start, quads, prism, sheared),
-    };
-    let Some(masks) = units.get(start..start + MASK_UNITS) else { return 0 };
-    let off = |masks: i16x8| {
-        let mut off = i16x8::splat(0);
-        for side in beyond {
-            off |= (masks & i16x8::splat(side as i16)).simd_eq(masks);
-        }
-        off.to_bitmask()
-    };
-    !(off(masks[0].masks()) | off(masks[1].masks()) << 8) & 0xffff
+/// What a query shows of the leaves it comes to.
+pub(super) trait Show {
+    /// Shows a leaf, whose faces `screen` may leave out; returns the least that came back.
+    fn show(&mut self, leaf: Child, screen: impl FnOnce(&[Unit], &Prism, &mut Sheared) -> u32) -> f64;
 }
 
-/// For each side of the prism a bit for each point that is beyond it, for certain.
-#[inline(always)]
-fn beyond<const AXIS: usize>(
-    units: &[Unit],
-    start: usize,
-    quads: usize,
-    prism: &Prism,
-    sheared: &mut Sheared,
-) -> [u32; 6] {
-    let (next, last) = ((AXIS + 1) % 3, (AXIS + 2) % 3);
-    let [from_next, from_last, from_along] = prism.shear.origin.map(f64x4::splat);
-    let [slope, other] = prism.slopes.map(f64x4::splat);
-    let (least, most) = (prism.least.map(f64x4::splat), prism.most.map(f64x4::splat));
-    let mut beyond = [0; 6];
-    let first = start + MASK_UNITS;
-    for k in 0..quads {
-        let Some(pairs) = units.get(first + 2 * k * PAIR_UNITS..first + 2 * (k + 1) * PAIR_UNITS) else { break };
-        let four = |i: usize| {
-            let [[a, b], [c, d]] = [pairs[i], pairs[PAIR_UNITS + i]].map(Unit::coordinates);
-            f64x4::new([a, b, c, d])
-        };
-        let along = four(AXIS) - from_along;
-        let seen = [four(next) - from_next - slope * along, four(last) - from_last - other * along, along];
-        for (i, coordinate) in seen.into_iter().enumerate() {
-            sheared.coordinates[i][4 * k..4 * k + 4].copy_from_slice(&coordinate.to_array());
-            beyond[2 * i] |= coordinate.simd_lt(least[i]).to_bitmask() << (4 * k);
-            beyond[2 * i + 1] |= coordinate.simd_gt(most[i]).to_bitmask() << (4 * k);
-        }
-    }
-    beyond
+/// Shows all items of a leaf.
+pub(super) struct ShowBoxes<'a, H> {
+    pub(super) items: &'a [u32],
+    pub(super) hit: H,
 }
 
-/// Shows `hit` the faces of a leaf that are not certain to be off the prism; returns the least that it returned.
-#[inline(always)]
-pub(super) fn show(
-    units: &[Unit],
-    leaf: Child,
-    prism: &Prism,
-    sheared: &mut Sheared,
-    hit: &mut impl FnMut(Seen<'_>) -> f64,
-) -> f64 {
-    let places = leaf.range();
-    let start = places.start;
-    let mut met = screen(units, start, places.len(), prism, sheared);
-    let look = Look { units, sheared, start };
-    let mut limit = f64::INFINITY;
-    while met != 0 {
-        let j = met.trailing_zeros() as usize;
-        met &= met - 1;
-        let word = units[start - 1 - j / NUMBERS].number(j % NUMBERS);
-        let corners = ORDERS.get((word >> ORDER_SHIFT) as usize).map(|order| {
-            let mask = u32::from(units[start + j / 8].mask(j % 8));
-            let rest = mask & mask.wrapping_sub(1);
-            let places = [mask, rest, rest & rest.wrapping_sub(1)].map(|m| m.trailing_zeros() as usize);
-            SeenCorners { look: &look, places: order.map(|k| places[k]) }
-        });
-        let s = hit(Seen { item: word & (Child::MOST_ITEMS as u32 - 1), corners });
-        limit = if s < limit { s } else { limit };
+impl<H: FnMut(Seen<'_>) -> f64> Show for ShowBoxes<'_, H> {
+    #[inline(always)] // for the registers of the caller
+    fn show(&mut self, leaf: Child, _: impl FnOnce(&[Unit], &Prism, &mut Sheared) -> u32) -> f64 {
+        self.items[leaf.range()].iter().fold(f64::INFINITY, |limit, &item| {
+            let s = (self.hit)(Seen { item, corners: None });
+            if s < limit { s } else { limit }
+        })
     }
-    limit
+}
+
+/// Shows the faces of a leaf that are not certain to be off a prism.
+pub(super) struct ShowFaces<'a, H> {
+    pub(super) units: &'a [Unit],
+    pub(super) prism: Prism,
+    pub(super) sheared: Sheared,
+    pub(super) hit: H,
+}
+
+impl<H: FnMut(Seen<'_>) -> f64> Show for ShowFaces<'_, H> {
+    #[inline(always)] // for the registers of the caller
+    fn show(&mut self, leaf: Child, screen: impl FnOnce(&[Unit], &Prism, &mut Sheared) -> u32) -> f64 {
+        let places = leaf.range();
+        let Some((before, rest)) = self.units.split_at_checked(places.start) else { return f64::INFINITY };
+        let Some(own) = rest.get(..MASK_UNITS + 2 * PAIR_UNITS * places.len()) else { return f64::INFINITY };
+        let mut met = screen(own, &self.prism, &mut self.sheared);
+        let Some((masks, points)) = own.split_first_chunk::<MASK_UNITS>() else { return f64::INFINITY };
+        let masks: &[u16; MOST] = bytemuck::cast_ref(masks);
+        let mut limit = f64::INFINITY;
+        while met != 0 {
+            let j = met.trailing_zeros() as usize % MOST;
+            met &= met - 1;
+            let numbers: [u32; NUMBERS] = cast(before[before.len() - 1 - j / NUMBERS]);
+            let word = numbers[j % NUMBERS];
+            let corners = ORDERS.get((word >> ORDER_SHIFT) as usize).map(|order| {
+                let mask = u32::from(masks[j]);
+                let rest = mask & mask.wrapping_sub(1);
+                let places = [mask, rest, rest & rest.wrapping_sub(1)].map(|m| m.trailing_zeros() as usize);
+                SeenCorners { points, sheared: &self.sheared, places: order.map(|k| places[k]) }
+            });
+            let s = (self.hit)(Seen { item: word & (Child::MOST_ITEMS as u32 - 1), corners });
+            limit = if s < limit { s } else { limit };
+        }
+        limit
+    }
 }

@@ -35,6 +35,12 @@ impl Prism {
         if bound.is_finite() { prism } else { Self { least: [f64::NEG_INFINITY; 3], most: [f64::INFINITY; 3], ..prism } }
     }
 
+    /// The coordinate `i` of the point that becomes the origin, of a shear along `axis`.
+    #[inline(always)] // so that the axis is in the instructions
+    pub(super) fn origin(&self, i: usize, axis: usize) -> f64 {
+        self.shear.origin[(i + 5 - axis) % 3]
+    }
+
     /// A box, in which there is nothing to shear and nothing to round.
     pub(super) fn of_box(query: &Aabb) -> Self {
         Self {
