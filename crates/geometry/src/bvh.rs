@@ -205,13 +205,15 @@ impl Bvh {
         hit: impl FnMut(Seen<'_>) -> f64,
     ) -> u64 {
         let Some(local) = self.frame.segment(segment, &self.bounds) else { return 0 };
-        self.with_stack(|stack| match &self.leaves {
+        let (mut inline, mut heap) = ([Pending::default(); INLINE_STACK], Vec::new());
+        let stack = self.stack(&mut inline, &mut heap);
+        match &self.leaves {
             Leaves::Boxes(items) => walk(&self.nodes, &local, stack, &mut ShowBoxes { items, hit }),
             Leaves::Faces(units) => {
-                let (prism, sheared) = (Prism::around(segment, shear, &self.bounds), Sheared::default());
-                walk(&self.nodes, &local, stack, &mut ShowFaces { units, prism, sheared, hit })
+                let prism = Prism::around(segment, shear, &self.bounds);
+                walk(&self.nodes, &local, stack, &mut ShowFaces { units, prism, sheared: Sheared::default(), hit })
             }
-        })
+        }
     }
 
     /// Shows `hit` every item whose box meets `query`, and some near misses; returns the number of nodes looked at.
@@ -224,22 +226,26 @@ impl Bvh {
             hit(seen.item);
             f64::INFINITY
         };
-        self.with_stack(|stack| match &self.leaves {
+        let (mut inline, mut heap) = ([Pending::default(); INLINE_STACK], Vec::new());
+        let stack = self.stack(&mut inline, &mut heap);
+        match &self.leaves {
             Leaves::Boxes(items) => walk_box(&self.nodes, (&lo, &hi), stack, &mut ShowBoxes { items, hit }),
             Leaves::Faces(units) => {
-                let (prism, sheared) = (Prism::of_box(query), Sheared::default());
-                walk_box(&self.nodes, (&lo, &hi), stack, &mut ShowFaces { units, prism, sheared, hit })
+                let prism = Prism::of_box(query);
+                let mut leaves = ShowFaces { units, prism, sheared: Sheared::default(), hit };
+                walk_box(&self.nodes, (&lo, &hi), stack, &mut leaves)
             }
-        })
+        }
     }
 
-    fn with_stack(&self, walk: impl FnOnce(&mut [Pending]) -> u64) -> u64 {
-        // The first entry is the root, which is Child(0).
-        if self.stack <= INLINE_STACK {
-            walk(&mut [Pending::default(); INLINE_STACK])
-        } else {
-            walk(&mut vec![Pending::default(); self.stack])
+    /// Room for what can be pending: `inline` if that is enough. The first entry is the root, which is Child(0).
+    #[inline]
+    fn stack<'a>(&self, inline: &'a mut [Pending], heap: &'a mut Vec<Pending>) -> &'a mut [Pending] {
+        if self.stack <= inline.len() {
+            return inline;
         }
+        heap.resize(self.stack, Pending::default());
+        heap
     }
 }
 

@@ -28,9 +28,10 @@ impl Mesh {
         let segment = FatSegment { from: *from, to: *to, radius: 0.0 };
         work.nodes += self.bvh().look_along(&segment, sheared.shear(), |seen| {
             work.triangles += 1;
-            let (face, hit) = match &seen.corners {
-                Some(corners) => (seen.item, sheared.hits_sheared(&corners.sheared(), || corners.points())),
-                None => (seen.item, sheared.hits(self.corners(seen.item))),
+            let face = seen.item;
+            let hit = match &seen.corners {
+                Some(known) => sheared.hits_sheared(&known.sheared(), known.turn_bound, || known.points()),
+                None => sheared.hits(self.corners(face)),
             };
             if let SegmentHit::Hit { f, feature, .. } = hit
                 && best.is_none_or(|found| (f, face) < (found.f, found.face))

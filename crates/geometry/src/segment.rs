@@ -56,14 +56,15 @@ impl Sheared {
         self.hits_at(self.passage(corners), || corners.map(|v| *v))
     }
 
-    /// The same of a triangle whose corners are given as they are sheared; it is `triangle`.
+    /// The same of a triangle whose corners are given as they are sheared, with a bound for how they turn; it is `triangle`.
     #[inline]
     pub(crate) fn hits_sheared(
         &self,
-        corners: &[[f64; 3]; 3],
+        corners: &[[f64; 2]; 3],
+        bound: f64,
         triangle: impl FnOnce() -> [Point3<f64>; 3],
     ) -> SegmentHit {
-        self.hits_at(self.passage_of(corners), triangle)
+        self.hits_at(self.passage_of(corners, bound), triangle)
     }
 
     #[inline]

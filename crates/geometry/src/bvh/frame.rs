@@ -64,23 +64,42 @@ impl Frame {
     }
 
     /// The query, or `None` if it is certain to miss everything.
+    #[inline]
     pub(super) fn segment(&self, query: &FatSegment, bounds: &Aabb) -> Option<LocalSegment> {
         let FatSegment { from, to, radius } = query;
-        let all = || LocalSegment::new(0.0, 1.0, [0.0; 3], [0.0; 3], NEAR);
-        // Zero, unless one of them is not finite.
-        let zero = (0.0 * from.x + 0.0 * from.y + 0.0 * from.z) + (0.0 * to.x + 0.0 * to.y + 0.0 * to.z) + 0.0 * radius;
-        if zero != 0.0 || zero.is_nan() {
-            return (!bounds.is_empty()).then(all);
-        }
         let (a, b) = (self.local(from), self.local(to));
         let reach = largest_of(&a, &b);
-        let radius = largest(*radius, 0.0) * self.scale + segment_bound(reach);
+        // Zero, unless one of them is not finite.
+        let zero = (0.0 * from.x + 0.0 * from.y + 0.0 * from.z) + (0.0 * to.x + 0.0 * to.y + 0.0 * to.z) + 0.0 * radius;
+        let wide = largest(*radius, 0.0) * self.scale + segment_bound(reach);
+        // Not finite is not near.
+        let is_near = (reach <= NEAR) & (wide <= HOPELESS) & (zero == 0.0);
+        let part = if is_near {
+            Part { start: 0.0, end: 1.0, a, b, radius: wide }
+        } else {
+            self.far_segment(a, b, reach, wide, zero == 0.0, bounds)?
+        };
+        Some(LocalSegment::new(&part))
+    }
+
+    /// The part of a query that is near the tree, of one of which not all is.
+    #[cold]
+    fn far_segment(
+        &self,
+        a: [f64; 3],
+        b: [f64; 3],
+        reach: f64,
+        radius: f64,
+        is_finite: bool,
+        bounds: &Aabb,
+    ) -> Option<Part> {
+        let all = Part { start: 0.0, end: 1.0, a: [0.0; 3], b: [0.0; 3], radius: NEAR };
+        if !is_finite {
+            return (!bounds.is_empty()).then_some(all);
+        }
         // Also true where `reach` or the radius is no longer finite.
         if !(radius <= HOPELESS && reach <= HOPELESS / UNIT_ROUNDOFF) {
-            return Some(all());
-        }
-        if reach <= NEAR {
-            return Some(LocalSegment::new(0.0, 1.0, a, b, radius));
+            return Some(all);
         }
         // Boxes of the tree lie within NEAR at every scale.
         let limit = NEAR + radius;
@@ -91,8 +110,17 @@ impl Frame {
         let d = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
         let (s0, s1) = clip(&a, &d, (1.0 + radius) * (1.0 + gamma(2)))?;
         let at = |s: f64| [0, 1, 2].map(|i| a[i] + s * d[i]);
-        Some(LocalSegment::new(s0, s1, at(s0), at(s1), radius))
+        Some(Part { start: s0, end: s1, a: at(s0), b: at(s1), radius })
     }
+}
+
+/// What is looked at of a query: from `a` at s = `start` to `b` at s = `end`.
+struct Part {
+    start: f64,
+    end: f64,
+    a: [f64; 3],
+    b: [f64; 3],
+    radius: f64,
 }
 
 /// The largest |coordinate| of two points.
@@ -132,10 +160,9 @@ fn clip(a: &[f64; 3], d: &[f64; 3], bound: f64) -> Option<(f64, f64)> {
 }
 
 impl LocalSegment {
-    /// From `a` at s = `start` to `b` at s = `end`.
     #[inline]
-    fn new(start: f64, end: f64, a: [f64; 3], b: [f64; 3], radius: f64) -> Self {
-        let radius = round_up(radius + segment_bound_f32(largest_of(&a, &b), radius));
+    fn new(&Part { start, end, ref a, ref b, radius }: &Part) -> Self {
+        let radius = round_up(radius + segment_bound_f32(largest_of(a, b), radius));
         let mut local =
             Self { start, end, forward: [true; 3], near_from: [0.0; 3], far_from: [0.0; 3], inverse: [0.0; 3] };
         for i in 0..3 {

@@ -187,24 +187,30 @@ pub(crate) struct Seen<'a> {
 pub(crate) struct SeenCorners<'a> {
     points: &'a [Unit],
     sheared: &'a Sheared,
+    /// The places of the corners among the points, ascending.
     places: [usize; 3],
+    /// Which of these is the first corner of the face, which the next.
+    order: &'a [usize; 3],
+    /// A bound on the error of x1 y2 - x2 y1 of two of [`sheared`](Self::sheared).
+    pub(crate) turn_bound: f64,
 }
 
 impl SeenCorners<'_> {
     /// Where they are.
     #[inline]
     pub(crate) fn points(&self) -> [Point3<f64>; 3] {
-        self.places.map(|place| {
+        self.order.map(|k| {
+            let place = self.places[k];
             let pair = &self.points[place / 2 * PAIR_UNITS..][..PAIR_UNITS];
             Point3::from([0, 1, 2].map(|i| f64::from_bits(pair[i][place % 2])))
         })
     }
 
-    /// Across and along the query's segment.
+    /// Across the query's segment, in any order.
     #[inline]
-    pub(crate) fn sheared(&self) -> [[f64; 3]; 3] {
-        let [next, last, along] = &self.sheared.coordinates;
-        self.places.map(|place| [next[place % MOST], last[place % MOST], along[place % MOST]])
+    pub(crate) fn sheared(&self) -> [[f64; 2]; 3] {
+        let [next, last, _] = &self.sheared.coordinates;
+        self.places.map(|place| [next[place], last[place]])
     }
 }
 
@@ -253,11 +259,15 @@ impl<H: FnMut(Seen<'_>) -> f64> Show for ShowFaces<'_, H> {
             met &= met - 1;
             let numbers: [u32; NUMBERS] = cast(before[before.len() - 1 - j / NUMBERS]);
             let word = numbers[j % NUMBERS];
-            let corners = ORDERS.get((word >> ORDER_SHIFT) as usize).map(|order| {
-                let mask = u32::from(masks[j]);
-                let rest = mask & mask.wrapping_sub(1);
-                let places = [mask, rest, rest & rest.wrapping_sub(1)].map(|m| m.trailing_zeros() as usize);
-                SeenCorners { points, sheared: &self.sheared, places: order.map(|k| places[k]) }
+            let mask = u32::from(masks[j]);
+            let rest = mask & mask.wrapping_sub(1);
+            let places = [mask, rest, rest & rest.wrapping_sub(1)].map(|m| m.trailing_zeros() as usize % MOST);
+            let corners = ORDERS.get((word >> ORDER_SHIFT) as usize).map(|order| SeenCorners {
+                points,
+                sheared: &self.sheared,
+                places,
+                order,
+                turn_bound: self.prism.turn_bound,
             });
             let s = (self.hit)(Seen { item: word & (Child::MOST_ITEMS as u32 - 1), corners });
             limit = if s < limit { s } else { limit };

@@ -2,7 +2,7 @@
 
 use super::FatSegment;
 use crate::bounds::{Aabb, largest, least};
-use crate::rounding::{gamma, prism_bound};
+use crate::rounding::{gamma, prism_bound, sheared_bound};
 use crate::shear::Shear;
 
 /// A box in sheared coordinates that holds all that a query can reach, with room for the rounding of the coordinates that are held against it.
@@ -14,6 +14,8 @@ pub(super) struct Prism {
     /// The sides of the box, across and along.
     pub(super) least: [f64; 3],
     pub(super) most: [f64; 3],
+    /// A bound on the error of how two of the points turn about the line.
+    pub(super) turn_bound: f64,
 }
 
 impl Prism {
@@ -31,7 +33,7 @@ impl Prism {
         let wide = |slope: f64| radius * (1.0 + slope * slope).sqrt() * (1.0 + gamma(8)) + bound;
         let ([u, v], w) = (slopes.map(wide), radius + bound);
         let ends = [least(shear.length, 0.0), largest(shear.length, 0.0)].map(|end| end * (1.0 + gamma(4)));
-        let prism = Self { shear: *shear, slopes, least: [-u, -v, ends[0] - w], most: [u, v, ends[1] + w] };
+        let prism = Self { shear: *shear, slopes, least: [-u, -v, ends[0] - w], most: [u, v, ends[1] + w], turn_bound: sheared_bound(size, size) };
         if bound.is_finite() { prism } else { Self { least: [f64::NEG_INFINITY; 3], most: [f64::INFINITY; 3], ..prism } }
     }
 
@@ -48,6 +50,7 @@ impl Prism {
             slopes: [0.0; 2],
             least: query.min().coords.into(),
             most: query.max().coords.into(),
+            turn_bound: 0.0,
         }
     }
 }

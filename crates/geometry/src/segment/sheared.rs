@@ -43,20 +43,22 @@ impl Sheared {
     /// Where its line passes a triangle.
     #[inline]
     pub(super) fn passage(&self, corners: [&Point3<f64>; 3]) -> Passage {
-        self.passage_of(&match self.shear.axis {
+        let [a, b, c] = match self.shear.axis {
             0 => corners.map(|v| self.shear.of::<0>(v)),
             1 => corners.map(|v| self.shear.of::<1>(v)),
             _ => corners.map(|v| self.shear.of::<2>(v)),
-        })
+        };
+        let most = |i: usize| largest(largest(a[i].abs(), b[i].abs()), c[i].abs());
+        let bound = sheared_bound(largest(most(0), most(1)), most(2));
+        self.passage_of(&[a, b, c].map(|[next, last, _]| [next, last]), bound)
     }
 
-    /// Where its line passes a triangle whose corners are given as they are sheared.
+    /// Where its line passes a triangle, given how its corners are sheared and a [`sheared_bound`] for them.
     #[inline]
-    pub(super) fn passage_of(&self, [a, b, c]: &[[f64; 3]; 3]) -> Passage {
-        let most = |i: usize| largest(largest(a[i].abs(), b[i].abs()), c[i].abs());
+    pub(super) fn passage_of(&self, [a, b, c]: &[[f64; 2]; 3], bound: f64) -> Passage {
         // NaN without a direction.
-        let bound = sheared_bound(largest(most(0), most(1)), most(2)) + 0.0 * self.shear.slopes[0];
-        let turn = |a: &[f64; 3], b: &[f64; 3]| a[0] * b[1] - a[1] * b[0];
+        let bound = bound + 0.0 * self.shear.slopes[0];
+        let turn = |a: &[f64; 2], b: &[f64; 2]| a[0] * b[1] - a[1] * b[0];
         let (ab, bc, ca) = (turn(a, b), turn(b, c), turn(c, a));
         // All are NaN where there is no direction, and no comparison is true; where one alone is, it overflowed, and so did the bound.
         let (least, most) = (least(least(ab, bc), ca), largest(largest(ab, bc), ca));
