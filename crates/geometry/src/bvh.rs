@@ -351,22 +351,3 @@ fn walk_by(
 
 #[cfg(test)]
 mod tests;
-impl Bvh {
-    /// temp
-    pub fn stats(&self) {
-        let (mut leaves, mut inner, mut pts) = (0, 0, 0);
-        let mut hist = [0usize; 9];
-        for n in &self.nodes {
-            let mut kids = 0;
-            for (j, c) in n.child.iter().enumerate() {
-                if n.planes[0][0][j] == f32::INFINITY { continue; }
-                kids += 1;
-                if c.is_leaf() { leaves += 1; pts += c.range().len(); } else { inner += 1; }
-            }
-            hist[kids] += 1;
-        }
-        println!("nodes {} leaves {leaves} inner {inner} quads/leaf {:.2} faces/leaf {:.2} nodes B/face {:.2} kids {hist:?}", self.nodes.len(), pts as f64 / leaves as f64, self.len as f64 / leaves as f64, self.nodes.len() as f64 * 224.0 / self.len as f64);
-    }
-}
-/// temp
-pub fn knob(k: &str, d: usize) -> usize { std::env::var(k).map_or(d, |v| v.parse().unwrap()) }

@@ -277,7 +277,7 @@ fn groups<C: Content>(content: &C, items: &mut [Item], all: Group, level: usize)
 pub(super) fn cut<C: Content>(content: &C, items: &mut [Item], group: &Group, by_count: bool) -> [Group; 2] {
     let &Group { start, end, bounds, .. } = group;
     let own = &mut items[start..end];
-    let cut = if by_count { None } else { best_cut(own, &bounds, C::LARGEST) };
+    let cut = if by_count { None } else { best_cut(own, &bounds, C::AT_ONCE) };
     let middle = start + if let Some(cut) = cut { cut.divide(own) } else { halve(own) };
     [Group::of(content, items, start, middle), Group::of(content, items, middle, end)]
 }
@@ -321,10 +321,9 @@ impl Cut {
     }
 }
 
-/// The cut with the least sum of measure times leaves, of up to `largest` items; `None` if all items are at one place.
-fn best_cut(items: &[Item], bounds: &Box32, largest: usize) -> Option<Cut> {
-    let largest = if largest == 16 { *KNOB.get_or_init(|| super::knob("LARGEST", 16)) } else { largest };
-    let leaves = |count: usize| count.div_ceil(largest) as f32;
+/// The cut with the least sum of measure times looks, of which each is at up to `at_once` items; `None` if all items are at one place.
+fn best_cut(items: &[Item], bounds: &Box32, at_once: usize) -> Option<Cut> {
+    let looks = |count: usize| count.div_ceil(at_once) as f32;
     let has_area = bounds.area() > 0.0;
     let measure = |b: &Box32| if has_area { b.area() } else { b.girth() };
     let places = items.iter().fold(Box32::EMPTY, |mut b, item| {
@@ -355,13 +354,13 @@ fn best_cut(items: &[Item], bounds: &Box32, largest: usize) -> Option<Cut> {
         for k in (1..count).rev() {
             sum.0.add(&bins[k].0);
             sum.1 += bins[k].1;
-            right[k] = measure(&sum.0) * leaves(sum.1);
+            right[k] = measure(&sum.0) * looks(sum.1);
         }
         let mut sum = (Box32::EMPTY, 0);
         for first_right in 1..count {
             sum.0.add(&bins[first_right - 1].0);
             sum.1 += bins[first_right - 1].1;
-            let cost = measure(&sum.0) * leaves(sum.1) + right[first_right];
+            let cost = measure(&sum.0) * looks(sum.1) + right[first_right];
             if (1..items.len()).contains(&sum.1) && best.as_ref().is_none_or(|(least, _)| cost < *least) {
                 best = Some((cost, Cut { binning, axis, first_right }));
             }
@@ -383,4 +382,3 @@ fn halve(items: &mut [Item]) -> usize {
     });
     half
 }
-static KNOB: std::sync::OnceLock<usize> = std::sync::OnceLock::new();

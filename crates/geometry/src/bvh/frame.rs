@@ -257,7 +257,7 @@ mod tests {
 
     #[test]
     fn a_limit_in_the_part_is_the_caller_s_and_not_below_it() {
-        let part = LocalSegment::new(0.25, 0.75, [0.0; 3], [0.5; 3], 0.0);
+        let part = LocalSegment::new(&Part { start: 0.25, end: 0.75, a: [0.0; 3], b: [0.5; 3], radius: 0.0 });
         for (s, limit) in [(0.375, 0.25f32), (0.5, 0.5), (0.625, 0.75)] {
             assert!((limit.next_up()..=limit.next_up().next_up()).contains(&part.local_limit(s)), "{s}");
         }

@@ -30,6 +30,8 @@ pub(super) trait Content: Sync {
     type Unit: Send;
     /// The most items in a leaf.
     const LARGEST: usize;
+    /// How many items are looked at as one.
+    const AT_ONCE: usize;
 
     /// The box of an item.
     fn bounds(&self, item: usize) -> Aabb;
@@ -68,6 +70,7 @@ pub(super) struct Boxes<F>(pub(super) F);
 impl<F: Fn(usize) -> Aabb + Sync> Content for Boxes<F> {
     type Unit = u32;
     const LARGEST: usize = 4;
+    const AT_ONCE: usize = 1;
 
     fn bounds(&self, item: usize) -> Aabb {
         (self.0)(item)
@@ -127,6 +130,7 @@ impl Corners {
 impl<B: Fn(usize) -> Aabb + Sync, C: Fn(u32) -> [Point3<f64>; 3] + Sync> Content for Faces<B, C> {
     type Unit = Unit;
     const LARGEST: usize = MOST;
+    const AT_ONCE: usize = MOST;
 
     fn bounds(&self, item: usize) -> Aabb {
         (self.bounds)(item)
