@@ -59,6 +59,7 @@ pub mod error;
 pub mod rounding;
 pub mod bounds;
 mod shear;
+pub mod order;
 pub mod bvh;
 mod exact;
 pub mod predicates;
