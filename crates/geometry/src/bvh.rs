@@ -8,8 +8,8 @@ mod leaves;
 mod prism;
 
 use frame::{Frame, LocalSegment};
-pub(crate) use leaves::Seen;
 use lanes::Sheared;
+pub(crate) use leaves::Seen;
 use leaves::{Boxes, Faces, Leaves, Show, ShowBoxes, ShowFaces, Unit};
 use multiversion::multiversion;
 use multiversion::target::match_target;
@@ -198,12 +198,7 @@ impl Bvh {
 
     /// [`visit`](Self::visit) with what is known of the items; `shear` is that of the segment.
     #[inline]
-    pub(crate) fn look_along(
-        &self,
-        segment: &FatSegment,
-        shear: &Shear,
-        hit: impl FnMut(Seen<'_>) -> f64,
-    ) -> u64 {
+    pub(crate) fn look_along(&self, segment: &FatSegment, shear: &Shear, hit: impl FnMut(Seen<'_>) -> f64) -> u64 {
         let Some(local) = self.frame.segment(segment, &self.bounds) else { return 0 };
         let (mut inline, mut heap) = ([Pending::default(); INLINE_STACK], Vec::new());
         let stack = self.stack(&mut inline, &mut heap);

@@ -279,3 +279,6 @@ impl<H: FnMut(Seen<'_>) -> f64> Show for ShowFaces<'_, H> {
         limit
     }
 }
+
+#[cfg(test)]
+mod tests;

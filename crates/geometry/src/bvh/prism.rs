@@ -33,8 +33,18 @@ impl Prism {
         let wide = |slope: f64| radius * (1.0 + slope * slope).sqrt() * (1.0 + gamma(8)) + bound;
         let ([u, v], w) = (slopes.map(wide), radius + bound);
         let ends = [least(shear.length, 0.0), largest(shear.length, 0.0)].map(|end| end * (1.0 + gamma(4)));
-        let prism = Self { shear: *shear, slopes, least: [-u, -v, ends[0] - w], most: [u, v, ends[1] + w], turn_bound: sheared_bound(size, size) };
-        if bound.is_finite() { prism } else { Self { least: [f64::NEG_INFINITY; 3], most: [f64::INFINITY; 3], ..prism } }
+        let prism = Self {
+            shear: *shear,
+            slopes,
+            least: [-u, -v, ends[0] - w],
+            most: [u, v, ends[1] + w],
+            turn_bound: sheared_bound(size, size),
+        };
+        if bound.is_finite() {
+            prism
+        } else {
+            Self { least: [f64::NEG_INFINITY; 3], most: [f64::INFINITY; 3], ..prism }
+        }
     }
 
     /// The coordinate `i` of the point that becomes the origin, of a shear along `axis`.
