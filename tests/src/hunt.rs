@@ -20,7 +20,7 @@ use std::sync::Arc;
 pub const FAMILIES: [&str; 8] = ["spot", "bunny", "stairs", "terrain", "jacksboro", "soup", "wedge", "box"];
 
 /// Stretches of motion after which a ball is taken to hang.
-const STRETCHES: u64 = 100_000;
+const STRETCHES: u64 = 1_000_000;
 
 /// The meshes, read once.
 #[derive(Debug, Clone)]
