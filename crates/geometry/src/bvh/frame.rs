@@ -2,7 +2,7 @@
 
 use super::FatSegment;
 use crate::bounds::{Aabb, largest};
-use crate::rounding::{UNIT_ROUNDOFF, gamma, segment_bound, segment_bound_f32};
+use crate::rounding::{UNIT_ROUNDOFF, UNIT_ROUNDOFF_F32, gamma, segment_bound, segment_bound_f32};
 
 /// A margin beyond this is so much larger than the tree, which has a half extent of 1, that no box can be told apart.
 const HOPELESS: f64 = 1048576.0;
@@ -162,7 +162,7 @@ fn clip(a: &[f64; 3], d: &[f64; 3], bound: f64) -> Option<(f64, f64)> {
 impl LocalSegment {
     #[inline]
     fn new(&Part { start, end, ref a, ref b, radius }: &Part) -> Self {
-        let radius = round_up(radius + segment_bound_f32(largest_of(a, b), radius));
+        let radius = above(radius + segment_bound_f32(largest_of(a, b), radius));
         let mut local =
             Self { start, end, forward: [true; 3], near_from: [0.0; 3], far_from: [0.0; 3], inverse: [0.0; 3] };
         for i in 0..3 {
@@ -188,8 +188,14 @@ impl LocalSegment {
             return -1.0;
         }
         // start <= s < end, so that the length is not 0; three roundings.
-        round_up((s - self.start) / (self.end - self.start) * (1.0 + gamma(4)))
+        above((s - self.start) / (self.end - self.start) * (1.0 + gamma(4)))
     }
+}
+
+/// An f32 above `v`, which is not below 0, by three roundings at most: in two steps that do not depend on `v`.
+#[inline]
+fn above(v: f64) -> f32 {
+    v as f32 * (1.0 + 2.0 * UNIT_ROUNDOFF_F32 as f32) + f32::MIN_POSITIVE
 }
 
 /// The largest f32 that is not above `v`.

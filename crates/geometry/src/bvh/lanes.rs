@@ -54,6 +54,7 @@ macro_rules! questions {
         fn beyond<const AXIS: usize>(points: &[Unit], prism: &Prism, sheared: &mut Sheared) -> [u32; 6] {
             let [next, last, along] = &mut sheared.coordinates;
             let mut beyond = [0; 6];
+            let Some(points) = points.first_chunk::<{ MOST / 2 * PAIR_UNITS }>() else { return beyond };
             let quads = points.chunks_exact(2 * PAIR_UNITS).enumerate();
             let stores = next.as_chunks_mut::<4>().0.iter_mut().zip(last.as_chunks_mut::<4>().0).zip(along.as_chunks_mut::<4>().0);
             for ((k, pairs), ((next, last), along)) in quads.zip(stores) {

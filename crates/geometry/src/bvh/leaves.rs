@@ -163,8 +163,8 @@ impl<B: Fn(usize) -> Aabb + Sync, C: Fn(u32) -> [Point3<f64>; 3] + Sync> Content
     }
 
     fn leaves(mut units: Vec<Unit>) -> Leaves {
-        // The last leaf may be read as if it had another pair.
-        units.extend([Unit::default(); PAIR_UNITS]);
+        // Leaves are read as if they had all the points they may.
+        units.extend([Unit::default(); MOST / 2 * PAIR_UNITS]);
         units.shrink_to_fit();
         Leaves::Faces(units)
     }
@@ -253,7 +253,7 @@ impl<H: FnMut(Seen<'_>) -> f64> Show for ShowFaces<'_, H> {
     fn show(&mut self, leaf: Child, screen: impl FnOnce(&[Unit], &Prism, &mut Sheared) -> u32) -> f64 {
         let places = leaf.range();
         let Some((before, rest)) = self.units.split_at_checked(places.start) else { return f64::INFINITY };
-        let Some(own) = rest.get(..MASK_UNITS + 2 * PAIR_UNITS * places.len()) else { return f64::INFINITY };
+        let Some(own) = rest.get(..MASK_UNITS + MOST / 2 * PAIR_UNITS) else { return f64::INFINITY };
         let mut met = screen(own, &self.prism, &mut self.sheared);
         let Some((masks, points)) = own.split_first_chunk::<MASK_UNITS>() else { return f64::INFINITY };
         let masks: &[u16; MOST] = bytemuck::cast_ref(masks);
