@@ -34,6 +34,8 @@ pub enum Flaw {
     Restitution,
     /// v_t+ is not what the friction law makes of v_t-.
     Friction,
+    /// An impact without friction pushes where no touched normal does.
+    Push,
     /// Velocity before an impact is not that at the end of the flight.
     Velocity,
     /// Energy grew.

@@ -111,11 +111,9 @@ fn r09_overlapping_and_leaving_is_no_event_and_overlapping_and_closing_is_one_no
 #[test]
 fn r10_every_loop_is_bounded_and_says_so() {
     // A ball between walls nearer to each other than its diameter: no time can pass.
-    let stage = Stage::new(1.0)
-        .plane("left", smooth(1.0), [0.0; 3], [1.0, 0.0, 0.0])
-        .plane("right", smooth(1.0), [0.5, 0.0, 0.0], [-1.0, 0.0, 0.0])
-        .ball([0.25, 0.0, 0.0], [1.0, 0.0, 0.0], 0.5);
-    let outcome = stage.run().outcome;
+    let wall = |x: f64| [[x, -9.0, -9.0], [x, 9.0, -9.0], [x, 9.0, 9.0], [x, -9.0, 9.0]];
+    let stage = Stage::new(1.0).polygon("left", smooth(1.0), &wall(0.0)).polygon("right", smooth(1.0), &wall(0.5));
+    let outcome = stage.ball([0.25, 0.0, 0.0], [1.0, 0.0, 0.0], 0.5).run().outcome;
     assert!(outcome.time <= 1.0 && outcome.state.position.coords.norm().is_finite(), "{outcome:?}");
     assert!(outcome.counters.paths < 100_000, "{outcome:?}");
 }

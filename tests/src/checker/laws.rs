@@ -7,6 +7,24 @@ use carom_dynamics::effects::friction::{ContactFriction, Friction};
 use carom_dynamics::events::{Event, EventKind};
 use nalgebra::{Point3, Vector3};
 
+/// How much of `change` no sum of the `touched` normals is, and the sine of the angle between these, if they are known to `angle`; none if they push in
+/// all directions, or two of them in directions that may be one.
+fn beside(change: &Vector3<f64>, touched: &[(Vector3<f64>, usize)], angle: f64) -> Option<(f64, f64)> {
+    let mut spanned: Vec<Vector3<f64>> = Vec::new();
+    let mut sine = 1.0f64;
+    let rest = |v: &Vector3<f64>, spanned: &[Vector3<f64>]| spanned.iter().fold(*v, |rest, b| rest - b * b.dot(&rest));
+    for (n, _) in touched {
+        let new = rest(n, &spanned);
+        if new.norm() > angle {
+            sine = sine.min(new.norm());
+            spanned.push(rest(&new.normalize(), &spanned).normalize());
+        } else if new.norm() > 64.0 * U {
+            return None;
+        }
+    }
+    (spanned.len() < 3).then(|| (rest(change, &spanned).norm(), sine))
+}
+
 impl Checker<'_> {
     /// The directions from all that is touched at `x`, and how much is granted.
     fn touched(&self, x: &Point3<f64>, slack: f64) -> Vec<(Vector3<f64>, usize)> {
@@ -69,6 +87,13 @@ impl Checker<'_> {
                 let angle =
                     (64.0 * (slack + self.mesh_reach - self.mesh_radius) / self.mesh_radius).sqrt().min(0.2) + 1e-9;
                 let alone = together == 1 && touched.iter().all(|(n, _)| (n - e.normal).norm() <= angle);
+                if first && touched.iter().all(|(_, s)| self.scene.surfaces[*s].material.friction == Friction::None) {
+                    let change = e.velocity - e.velocity_in;
+                    if let Some((beside, sine)) = beside(&change, &touched, angle) {
+                        let allowed = (rounding + angle * change.norm()) / sine;
+                        self.note(Flaw::Push, beside, allowed, || format!("{e:?}, touched {touched:?}"));
+                    }
+                }
                 if alone && exact {
                     let m = &self.scene.surfaces[e.surface].material;
                     let c_r = m.restitution.coefficient();
