@@ -1,4 +1,4 @@
-//! A bounding-volume tree over boxes, asked by fat segments.
+//! A bounding-volume tree over boxes or faces, asked by fat segments.
 
 mod build;
 mod collapse;
@@ -124,13 +124,14 @@ impl Pending {
     }
 }
 
-/// A tree over boxes: eight children to a node, leaves of up to four items.
+/// A tree over items: boxes or the faces of a mesh. A node has eight children; a leaf holds four boxes at most, or up to sixteen faces with their
+/// corners, in f64, each once: a query looks at all of these together, and leaves out the faces that it is certain to miss.
 ///
 /// Node boxes are f32, rounded outwards, relative to the centre of everything and scaled to its extent by a power of
 /// two: scaling the input by a power of two changes nothing, bit for bit, while coordinates stay normal. An answer may
-/// hold items that are near misses, by about 1e-6 of the extent of everything, and never lacks one.
+/// hold items that are near misses, of boxes by about 1e-6 of the extent of everything, and never lacks one.
 ///
-/// The tree is a function of the boxes and their order alone.
+/// The tree is a function of the items and their order alone, and an answer does not depend on the registers of the processor.
 #[derive(Debug, Clone)]
 pub struct Bvh {
     bounds: Aabb,
@@ -186,7 +187,7 @@ impl Bvh {
         self.nodes.len() * size_of::<Node>() + self.leaves.bytes()
     }
 
-    /// Shows `hit` every item whose box meets `segment`, and some near misses, nearly front to back; returns the number
+    /// Shows `hit` every item, a box or a face, that meets `segment`, and some near misses, nearly front to back; returns the number
     /// of nodes looked at.
     ///
     /// `hit` returns the s, from 0 at `from` to 1 at `to`, beyond which nothing is of interest any more: boxes that the
