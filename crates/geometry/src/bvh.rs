@@ -246,13 +246,34 @@ impl Bvh {
 }
 
 /// Goes through the nodes that meet the box from `lo` to `hi`, and shows the leaves that are in them; returns how many nodes there were.
-fn walk_box(nodes: &[Node], (lo, hi): (&[f32; 3], &[f32; 3]), stack: &mut [Pending], leaves: &mut impl Show) -> u64 {
+#[multiversion(targets("x86_64+avx2"))]
+fn walk_box(nodes: &[Node], bounds: (&[f32; 3], &[f32; 3]), stack: &mut [Pending], leaves: &mut impl Show) -> u64 {
+    match_target! {
+        "x86_64+avx2" => walk_box_by(
+            nodes,
+            bounds,
+            stack,
+            leaves,
+            |leaf: &[Unit], prism: &Prism, sheared: &mut Sheared| lanes::avx2::screen(leaf, prism, sheared),
+        ),
+        _ => walk_box_by(nodes, bounds, stack, leaves, lanes::narrow::screen),
+    }
+}
+
+#[inline(always)] // so that it is compiled with `walk_box`
+fn walk_box_by(
+    nodes: &[Node],
+    (lo, hi): (&[f32; 3], &[f32; 3]),
+    stack: &mut [Pending],
+    leaves: &mut impl Show,
+    screen: impl Fn(&[Unit], &Prism, &mut Sheared) -> u32,
+) -> u64 {
     let (mut pending, mut visited) = (1, 0);
     while pending > 0 {
         pending -= 1;
         let child = stack[pending].child();
         if child.is_leaf() {
-            leaves.show(child, lanes::narrow::screen);
+            leaves.show(child, &screen);
             continue;
         }
         let Some(node) = nodes.get(child.0 as usize) else { continue };
