@@ -1,4 +1,4 @@
-//! A bounding-volume tree over boxes, asked by fat segments.
+//! A bounding-volume tree over boxes or faces, asked by fat segments.
 
 mod build;
 mod collapse;
@@ -124,13 +124,14 @@ impl Pending {
     }
 }
 
-/// A tree over boxes: eight children to a node, leaves of up to four items.
+/// A tree over items: boxes or the faces of a mesh. A node has eight children; a leaf holds four boxes at most, or up to sixteen faces with their
+/// corners, in f64, each once: a query looks at all of these together, and leaves out the faces that it is certain to miss.
 ///
 /// Node boxes are f32, rounded outwards, relative to the centre of everything and scaled to its extent by a power of
 /// two: scaling the input by a power of two changes nothing, bit for bit, while coordinates stay normal. An answer may
-/// hold items that are near misses, by about 1e-6 of the extent of everything, and never lacks one.
+/// hold items that are near misses, of boxes by about 1e-6 of the extent of everything, and never lacks one.
 ///
-/// The tree is a function of the boxes and their order alone.
+/// The tree is a function of the items and their order alone, and an answer does not depend on the registers of the processor.
 #[derive(Debug, Clone)]
 pub struct Bvh {
     bounds: Aabb,
@@ -186,7 +187,7 @@ impl Bvh {
         self.nodes.len() * size_of::<Node>() + self.leaves.bytes()
     }
 
-    /// Shows `hit` every item whose box meets `segment`, and some near misses, nearly front to back; returns the number
+    /// Shows `hit` every item, a box or a face, that meets `segment`, and some near misses, nearly front to back; returns the number
     /// of nodes looked at.
     ///
     /// `hit` returns the s, from 0 at `from` to 1 at `to`, beyond which nothing is of interest any more: boxes that the
@@ -245,13 +246,34 @@ impl Bvh {
 }
 
 /// Goes through the nodes that meet the box from `lo` to `hi`, and shows the leaves that are in them; returns how many nodes there were.
-fn walk_box(nodes: &[Node], (lo, hi): (&[f32; 3], &[f32; 3]), stack: &mut [Pending], leaves: &mut impl Show) -> u64 {
+#[multiversion(targets("x86_64+avx2"))]
+fn walk_box(nodes: &[Node], bounds: (&[f32; 3], &[f32; 3]), stack: &mut [Pending], leaves: &mut impl Show) -> u64 {
+    match_target! {
+        "x86_64+avx2" => walk_box_by(
+            nodes,
+            bounds,
+            stack,
+            leaves,
+            |leaf: &[Unit], prism: &Prism, sheared: &mut Sheared| lanes::avx2::screen(leaf, prism, sheared),
+        ),
+        _ => walk_box_by(nodes, bounds, stack, leaves, lanes::narrow::screen),
+    }
+}
+
+#[inline(always)] // so that it is compiled with `walk_box`
+fn walk_box_by(
+    nodes: &[Node],
+    (lo, hi): (&[f32; 3], &[f32; 3]),
+    stack: &mut [Pending],
+    leaves: &mut impl Show,
+    screen: impl Fn(&[Unit], &Prism, &mut Sheared) -> u32,
+) -> u64 {
     let (mut pending, mut visited) = (1, 0);
     while pending > 0 {
         pending -= 1;
         let child = stack[pending].child();
         if child.is_leaf() {
-            leaves.show(child, lanes::narrow::screen);
+            leaves.show(child, &screen);
             continue;
         }
         let Some(node) = nodes.get(child.0 as usize) else { continue };

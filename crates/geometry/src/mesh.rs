@@ -266,7 +266,7 @@ impl Mesh {
         self.bvh.bounds()
     }
 
-    /// The tree over the faces' boxes; its items are the faces.
+    /// The tree over the faces.
     pub fn bvh(&self) -> &Bvh {
         &self.bvh
     }

@@ -11,7 +11,7 @@ use smallvec::SmallVec;
 
 /// The most corners, and the most faces, in a leaf: a bit of a u16 for each.
 pub(super) const MOST: usize = 16;
-/// Units of a leaf that holds one face: its number, its corners, and which are its.
+/// Units of a leaf that holds one face: its number, which points are its corners, and these.
 const MOST_UNITS_OF_A_FACE: usize = 1 + MASK_UNITS + PAIR_UNITS * 2;
 /// Units of a word of 16 bits for each face.
 pub(super) const MASK_UNITS: usize = 2;
@@ -159,7 +159,8 @@ impl<B: Fn(usize) -> Aabb + Sync, C: Fn(u32) -> [Point3<f64>; 3] + Sync> Content
             let other = pair.last().copied().unwrap_or_default();
             units.extend((0..3).map(|i| [pair[0][i], other[i]]));
         }
-        Child::leaf(start, corners.points.len().div_ceil(4))
+        // What follows is read whole: there is nothing to count.
+        Child::leaf(start, 1)
     }
 
     fn leaves(mut units: Vec<Unit>) -> Leaves {
@@ -251,8 +252,7 @@ pub(super) struct ShowFaces<'a, H> {
 impl<H: FnMut(Seen<'_>) -> f64> Show for ShowFaces<'_, H> {
     #[inline(always)] // for the registers of the caller
     fn show(&mut self, leaf: Child, screen: impl FnOnce(&[Unit], &Prism, &mut Sheared) -> u32) -> f64 {
-        let places = leaf.range();
-        let Some((before, rest)) = self.units.split_at_checked(places.start) else { return f64::INFINITY };
+        let Some((before, rest)) = self.units.split_at_checked(leaf.range().start) else { return f64::INFINITY };
         let Some(own) = rest.get(..MASK_UNITS + MOST / 2 * PAIR_UNITS) else { return f64::INFINITY };
         let mut met = screen(own, &self.prism, &mut self.sheared);
         let Some((masks, points)) = own.split_first_chunk::<MASK_UNITS>() else { return f64::INFINITY };
