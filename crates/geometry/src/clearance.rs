@@ -68,6 +68,13 @@ impl Clearance {
         Self { c: coefficients }
     }
 
+    /// What is left of it beyond `margin`.
+    #[inline]
+    pub(crate) fn beyond(&self, margin: f64) -> Self {
+        let [c0, c1, c2, c3, c4] = self.c;
+        Self { c: [c0 - margin, c1, c2, c3, c4] }
+    }
+
     /// c(f).
     #[inline]
     pub fn at(&self, f: f64) -> f64 {

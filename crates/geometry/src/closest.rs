@@ -88,6 +88,14 @@ impl Asked {
         }
     }
 
+    /// Whether the triangle's own plane is what is nearest to `x`, seen along its normal: false where that is in doubt.
+    #[inline]
+    pub(crate) fn is_under(&self, x: &Vector3<f64>) -> bool {
+        self.in_range
+            && largest(self.size, amax(&(x - self.corners[0]))) < LIMIT_OF_DIRECT
+            && self.frame.is_under(&Point3::from(*x))
+    }
+
     /// The corners of the triangle.
     #[inline]
     pub(crate) fn corners(&self) -> &[Vector3<f64>; 3] {
@@ -131,27 +139,31 @@ pub(crate) struct Frame {
     ac: Vector3<f64>,
     /// ab x ac.
     pub(crate) normal: Vector3<f64>,
+    /// Whether a plain cross product would lose too much of that.
+    is_needle: bool,
 }
 
 impl Frame {
+    #[inline]
     pub(crate) fn new(t: &[Point3<f64>; 3]) -> Self {
-        let squares = [t[1] - t[0], t[2] - t[1], t[0] - t[2]].map(|e| e.norm_squared());
+        let [t0, t1, t2] = *t;
         // Edge i runs from vertex i to i + 1 and is opposite to vertex i + 2.
-        let first = if squares[1] >= squares[0] && squares[1] >= squares[2] {
-            0
+        let edges = [t1 - t0, t2 - t1, t0 - t2];
+        let squares = edges.map(|e| e.norm_squared());
+        let (first, vertices, ab, ac, product) = if squares[1] >= squares[0] && squares[1] >= squares[2] {
+            (0, [t0, t1, t2], edges[0], -edges[2], squares[0] * squares[2])
         } else if squares[2] >= squares[0] {
-            1
+            (1, [t1, t2, t0], edges[1], -edges[0], squares[1] * squares[0])
         } else {
-            2
+            (2, [t2, t0, t1], edges[2], -edges[1], squares[2] * squares[1])
         };
-        let vertices = [t[first], t[(first + 1) % 3], t[(first + 2) % 3]];
-        let [a, b, c] = vertices;
-        let (ab, ac) = (b - a, c - a);
         let mut normal = ab.cross(&ac);
-        if normal.norm_squared() < NEEDLE_SINE_SQUARED * squares[first] * squares[(first + 2) % 3] {
-            normal = cross_compensated(&a, &b, &c);
+        let is_needle = normal.norm_squared() < NEEDLE_SINE_SQUARED * product;
+        if is_needle {
+            let [a, b, c] = &vertices;
+            normal = cross_compensated(a, b, c);
         }
-        Self { first: first as u8, vertices, ab, ac, normal }
+        Self { first, vertices, ab, ac, normal, is_needle }
     }
 
     fn vertex(&self, i: u8) -> Feature {
@@ -160,6 +172,21 @@ impl Frame {
 
     fn edge(&self, i: u8) -> Feature {
         Feature::Edge((self.first + i) % 3)
+    }
+
+    /// How far the foot of a point is inside of each edge, from the point's place as seen from each vertex.
+    ///
+    /// Triple products, not the differences of products d1 d4 - d3 d2 ... that they equal: those lose the height of a needle.
+    #[inline]
+    fn insides(&self, [ap, bp, cp]: &[Vector3<f64>; 3]) -> [f64; 3] {
+        let inside = |p: &Vector3<f64>, q: &Vector3<f64>| self.normal.dot(&p.cross(q));
+        [inside(&self.ab, ap), inside(ap, &self.ac), inside(bp, cp)]
+    }
+
+    /// Whether `x` is over the inside of the triangle, to the rounding of its distances from the vertices; of a needle, that tells nothing.
+    #[inline]
+    fn is_under(&self, x: &Point3<f64>) -> bool {
+        !self.is_needle && self.insides(&self.vertices.map(|v| x - v)).iter().all(|inside| *inside > 0.0)
     }
 
     /// The closest point, of a triangle and a point in [`DIRECT_RANGE`].
@@ -182,9 +209,6 @@ impl Frame {
         if d6 >= 0.0 && d5 <= d6 {
             return at(c, cp, self.vertex(2));
         }
-        // Triple products, not the differences of products d1 d4 - d3 d2 ... that they equal: those lose the height of a needle.
-        let n = self.normal;
-        let inside = |p: &Vector3<f64>, q: &Vector3<f64>| n.dot(&p.cross(q));
         // From the end with the lower coordinates and without the third vertex: the same bits from each face that has the edge.
         let along = |p: &Point3<f64>, q: &Point3<f64>, feature| {
             let (from, to) = if is_lower(&p.coords, &q.coords) { (p, q) } else { (q, p) };
@@ -199,7 +223,7 @@ impl Frame {
             let rest = edge.dot(&offset) / length;
             at(from + edge * (part + rest), offset - edge * rest, feature)
         };
-        let (vc, vb, va) = (inside(&ab, &ap), inside(&ap, &ac), inside(&bp, &cp));
+        let [vc, vb, va] = self.insides(&[ap, bp, cp]);
         if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 && d1 > d3 {
             return along(&a, &b, self.edge(0));
         }
@@ -210,6 +234,7 @@ impl Frame {
         if va <= 0.0 && beyond_b >= 0.0 && beyond_c >= 0.0 && beyond_b + beyond_c > 0.0 {
             return along(&b, &c, self.edge(1));
         }
+        let n = self.normal;
         let area_squared = n.norm_squared();
         if area_squared > 0.0 {
             let offset = n * (n.dot(&ap) / area_squared);

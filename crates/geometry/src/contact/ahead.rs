@@ -31,24 +31,23 @@ impl Query<'_> {
             let Some(there) = self.seems_to_touch(feature, f, unit).filter(|there| *there < self.end) else { break };
             *rounds += 1;
             let near = 2.0 * self.bound_at(there);
-            let (support, plane) = Support::near(self.ball, self.asked, there, near);
+            let (closest, plane) = Support::near(self.ball, self.asked, there, near);
             if plane.at(f) <= 2.0 * self.bound_at(f) {
                 break;
             }
-            let (entry, bound) = self.meets(support.gap, &support.normal, f);
+            let (entry, bound) = self.meets(&plane, f);
             f = match entry {
                 Entry::At { f: next, .. } if next <= to => next,
                 _ => return Ahead::Ends(Contact::Miss),
             };
             if plane.at(there).abs() <= near && plane.rate(there) < 0.0 {
-                let feature = support.feature;
-                let f = self.polish((support, plane), f, bound, rounds);
-                return Ahead::Ends(Contact::At { f, feature });
+                let f = self.polish((closest, plane, there), f, bound, rounds);
+                return Ahead::Ends(Contact::At { f, feature: closest });
             }
-            if support.feature == feature {
+            if closest == feature {
                 break;
             }
-            feature = support.feature;
+            feature = closest;
         }
         Ahead::FreeUntil(f)
     }
