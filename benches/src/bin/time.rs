@@ -41,7 +41,7 @@ fn main() -> Result<()> {
     }
 }
 
-/// A ball against a triangle: quartiles over the cases with exact answers, of the queries that end on each feature.
+/// A ball against a triangle: deciles over the cases with exact answers, of the queries that end on each feature.
 fn triangle(runs: usize) {
     const TIMES: usize = 64;
     let mut all: Vec<(String, f64)> = Vec::new();
@@ -60,9 +60,8 @@ fn triangle(runs: usize) {
     all.sort_by(|a, b| a.1.total_cmp(&b.1));
     for kind in ["", "miss", "face", "edge", "vertex"] {
         let of: Vec<f64> = all.iter().filter(|(k, _)| kind.is_empty() || k == kind).map(|(_, t)| *t).collect();
-        let part = |k: usize| of[(of.len() - 1) * k / 4];
-        let quartiles = [part(1), part(2), part(3)].map(|t| format!("{t:.0}")).join(", ");
-        println!("triangle {kind}: {} queries, quartiles {quartiles} ns", of.len());
+        let deciles: Vec<String> = (1..10).map(|k| format!("{:.0}", of[(of.len() - 1) * k / 10])).collect();
+        println!("triangle {kind}: {} queries, deciles {} ns", of.len(), deciles.join(", "));
     }
 }
 

@@ -183,10 +183,14 @@ impl Frame {
         [inside(&self.ab, ap), inside(ap, &self.ac), inside(bp, cp)]
     }
 
-    /// Whether `x` is over the inside of the triangle, to the rounding of its distances from the vertices; of a needle, that tells nothing.
+    /// Whether `x` is over the inside of the triangle, to the rounding of its distances from the vertices. Of a needle, the triple products do not
+    /// tell what is beyond its ends.
     #[inline]
     fn is_under(&self, x: &Point3<f64>) -> bool {
-        !self.is_needle && self.insides(&self.vertices.map(|v| x - v)).iter().all(|inside| *inside > 0.0)
+        if self.is_needle {
+            return self.closest(x).feature == Feature::Face;
+        }
+        self.insides(&self.vertices.map(|v| x - v)).iter().all(|inside| *inside > 0.0)
     }
 
     /// The closest point, of a triangle and a point in [`DIRECT_RANGE`].

@@ -163,16 +163,6 @@ pub(crate) fn contact_from(ball: &MovingBall, asked: &Asked, from: f64, to: f64,
         if height <= 2.0 * bound && falling {
             return Contact::At { feature, f: query.polish((feature, plane, f), f, bound, rounds) };
         }
-        if !std::mem::replace(&mut looked, true) {
-            match query.look_ahead(feature, f, to, rounds) {
-                Ahead::Ends(contact) => return contact,
-                Ahead::FreeUntil(next) if next > f => {
-                    f = next;
-                    continue;
-                }
-                Ahead::FreeUntil(_) => {}
-            }
-        }
         let (entry, bound) = query.meets(&plane, f);
         let Entry::At { f: next, .. } = entry else {
             return Contact::Miss;
@@ -180,7 +170,15 @@ pub(crate) fn contact_from(ball: &MovingBall, asked: &Asked, from: f64, to: f64,
         if (height <= 2.0 * bound && falling) || next - f <= 2.0 * UNIT_ROUNDOFF * f {
             return Contact::At { feature, f: query.polish((feature, plane, f), f, bound, rounds) };
         }
-        f = next;
+        let ahead = match looked {
+            false if next <= to => query.look_ahead(feature, f, next, to, rounds),
+            _ => Ahead::FreeUntil(next),
+        };
+        looked = true;
+        match ahead {
+            Ahead::Ends(contact) => return contact,
+            Ahead::FreeUntil(next) => f = next,
+        }
     }
     if f > to {
         return Contact::Miss;
