@@ -71,7 +71,8 @@ impl Stretch {
         distance > 0.0 && distance * distance > reach * reach * across.norm_squared()
     }
 
-    /// Whether a ball of `radius` seems to meet the inside of the triangle, if it comes to its plane at all: a guess, for which its chord will do.
+    /// Whether a ball of `radius` seems to meet the inside of the triangle, if it comes to its plane at all: a guess, by its chord and from there
+    /// by a step of Newton's method.
     #[inline]
     pub(crate) fn leads_into(&self, corners: &[Vector3<f64>; 3], normal: &Vector3<f64>, radius: f64) -> bool {
         let [a, b, c] = corners;
@@ -79,14 +80,20 @@ impl Stretch {
         let (from, to) = (normal.dot(&self.from) - height, normal.dot(&self.to) - height);
         let side = if from < 0.0 { -1.0 } else { 1.0 };
         let (from, to) = (side * from - radius, side * to - radius);
+        // Below the chord by this where the stretch is bent most.
+        let bend = side * normal.dot(&self.bend);
+        let below = |part: f64| 4.0 * (part * (1.0 - part));
         let part = if from <= 0.0 {
             0.0
         } else if to < from {
-            least(from / (from - to), 1.0)
+            let part = least(from / (from - to), 1.0);
+            let (height, falls) =
+                (from + (to - from) * part - bend * below(part), from - to + bend * (4.0 - 8.0 * part));
+            if falls > 0.0 { largest(least(part + height / falls, 1.0), 0.0) } else { part }
         } else {
             1.0
         };
-        let foot = self.from + (self.to - self.from) * part;
+        let foot = self.from + (self.to - self.from) * part - self.bend * below(part);
         let turn = |p: &Vector3<f64>, q: &Vector3<f64>| (q - p).cross(&(foot - p)).dot(normal);
         let turns = [turn(a, b), turn(b, c), turn(c, a)];
         turns.iter().all(|t| *t >= 0.0) || turns.iter().all(|t| *t <= 0.0)

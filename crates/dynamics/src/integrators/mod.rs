@@ -9,7 +9,6 @@ pub mod rk4;
 use crate::body::State;
 use crate::counters::Counters;
 use crate::forces::Forces;
-use crate::tolerance::FARTHEST;
 use adaptive::Adaptive;
 use carom_geometry::clearance::MAX_DEGREE;
 use carom_geometry::path::Path;
@@ -121,14 +120,6 @@ impl Step {
 
     /// Whether the path, the velocity and their reach over the whole step are finite: what is no number in any of their terms is none at the end.
     pub fn is_finite(&self) -> bool {
-        // What its terms come to, whatever their signs, is more than anything on the way.
-        let size = |v: &Vector3<f64>| v.x.abs() + v.y.abs() + v.z.abs();
-        let degree = self.path.terms().len();
-        let terms = self.path.terms().iter().chain(self.velocity.iter().take(degree + 1));
-        let most = terms.map(size).sum::<f64>() + size(&self.path.start().coords) + self.seconds;
-        if most <= FARTHEST {
-            return true;
-        }
         let State { position, velocity } = self.end();
         // A maximum passes over what is no number; a sum does not, not even of infinities that differ in sign.
         (position.coords.sum() + velocity.sum() + self.path.reach(self.to) + self.seconds).is_finite()
