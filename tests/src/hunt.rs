@@ -4,13 +4,13 @@ mod scenes;
 
 use crate::checker::{Checker, Flaw};
 use crate::obj;
+use crate::patience::{Stalled, simulate_within};
 use crate::random::Random;
 use crate::world::World;
 use carom_dynamics::events::{Ending, Outcome};
 use carom_dynamics::observer::Trajectory;
 use carom_dynamics::plan::Plan;
 use carom_dynamics::scene::Scene;
-use carom_dynamics::simulate::simulate;
 use carom_geometry::mesh::Mesh;
 use scenes::Draft;
 use std::collections::BTreeMap;
@@ -18,6 +18,9 @@ use std::sync::Arc;
 
 /// The families of scenes: real meshes, triangles anyhow with needles among them, acute wedges, and boxes.
 pub const FAMILIES: [&str; 8] = ["spot", "bunny", "stairs", "terrain", "jacksboro", "soup", "wedge", "box"];
+
+/// Stretches of motion after which a ball is taken to hang.
+const STRETCHES: u64 = 1_000_000;
 
 /// The meshes, read once.
 #[derive(Debug, Clone)]
@@ -81,12 +84,12 @@ impl Hunt {
     }
 
     /// Runs and checks the ball of a family and a seed; none if it found no free place to start.
-    pub fn run(&self, family: &str, seed: u64) -> Option<Run> {
-        let (scene, world) = self.scene(family, seed)?;
+    pub fn run(&self, family: &str, seed: u64) -> Result<Option<Run>, Stalled> {
+        let Some((scene, world)) = self.scene(family, seed) else { return Ok(None) };
         let plan = Plan::new(&scene).unwrap_or_else(|e| panic!("{family} {seed}: {e}"));
-        let ball = plan.balls().first()?;
+        let ball = &plan.balls()[0];
         let mut trajectory = Trajectory::default();
-        let outcome = simulate(&plan, ball, &mut trajectory);
+        let outcome = simulate_within(&plan, ball, &mut trajectory, STRETCHES)?;
         let checker = Checker::run(&world, &scene, ball, &trajectory, &outcome);
         let mut by_flaw: BTreeMap<Flaw, Vec<String>> = BTreeMap::new();
         for f in &checker.findings {
@@ -95,6 +98,6 @@ impl Hunt {
         }
         let flaws = by_flaw.iter().map(|(flaw, all)| format!("{flaw:?}, {} times, {}", all.len(), all[0])).collect();
         let worst = checker.worst;
-        Some(Run { scene, trajectory, outcome, flaws, worst })
+        Ok(Some(Run { scene, trajectory, outcome, flaws, worst }))
     }
 }

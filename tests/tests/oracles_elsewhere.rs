@@ -1,4 +1,5 @@
-//! What the library has no words for, said in its own: a wall that moves, from its own frame; a planet, as an effect of your own.
+//! What the library has no words for, said in its own: a wall that moves, from its own frame; a planet, as an effect of your own; a round wall, by its
+//! tangents.
 
 use carom_dynamics::body::{Body, State};
 use carom_dynamics::counters::Counters;
@@ -91,4 +92,52 @@ fn r05_bounces_on_a_planet_whose_pull_changes_with_height() {
     }
     assert_eq!(rows, 4 * table.rows().count());
     Worst::settle_all([times, speeds]);
+}
+
+#[test]
+fn r12_a_point_inside_a_circle_has_the_hits_of_its_tangents() {
+    /// A tangent for each hit, and each flight asks all.
+    const FEASIBLE: f64 = 1e4;
+    let table = Table::read("circle_billiard");
+    let (mut places, mut times) = (Worst::of("place on the circle"), Worst::of("time, as a way at 1 m/s"));
+    let mut moments = Worst::of("moment of the velocity");
+    let mut rows = 0;
+    for group in table.groups(3) {
+        let [r, theta0, alpha] = group[0].numbers(["R", "theta0", "alpha"]);
+        let feasible: Vec<_> = group.iter().filter(|row| row.number("n") <= FEASIBLE).collect();
+        let [most, way] = feasible[feasible.len() - 1].numbers(["n", "path_length"]);
+        // Hit k is at theta0 + k (pi - 2 alpha): the half turns change the sign, and what the product loses turns by as little.
+        let towards = |k: u32| {
+            let whole = -2.0 * f64::from(k) * alpha;
+            let lost = f64::mul_add(-2.0 * f64::from(k), alpha, -whole);
+            let angle = theta0 + whole;
+            let lost = lost + ((theta0 - (angle - whole)) + (whole - (angle - (angle - whole))));
+            let sign = if k.is_multiple_of(2) { 1.0 } else { -1.0 };
+            Vector3::new(angle.cos() - lost * angle.sin(), angle.sin() + lost * angle.cos(), 0.0) * sign
+        };
+        // All tangents lie outside of the circle: the chords of the hits touch none but their own.
+        let tangents = 1..=most as u32;
+        let walls = tangents.fold(Stage::new(way + r * alpha.cos()), |stage, k| {
+            stage.plane(&format!("tangent {k}"), smooth(1.0), Point3::from(towards(k) * r), -towards(k))
+        });
+        let start = Point3::from(towards(0) * r);
+        let run = walls.ball(start, (towards(1) - towards(0)).normalize(), 0.0).run();
+        let impacts = run.impacts();
+        assert_eq!(impacts.len() as f64, most);
+        for row in feasible {
+            let [n, x, y] = row.numbers(["n", "x", "y"]);
+            let impact = &impacts[n as usize - 1];
+            // Each hit turns the ball by two roundings of the tangent's direction, which all that follow carry on.
+            let bound = 4.0 * U * (n + 1.0) * (n + 1.0) * r;
+            let place = || format!("R = {r}, alpha = {alpha}, n = {n}");
+            places.see(impact.position.x, x, bound, place);
+            places.see(impact.position.y, y, bound, place);
+            times.see(impact.time, row.number("path_length"), bound, place);
+            let moment = impact.position.coords.cross(&impact.velocity).z;
+            moments.see(moment.abs(), row.number("angular_momentum_per_speed"), bound, place);
+            rows += 1;
+        }
+    }
+    assert_eq!(rows, 20, "of {} rows, those of up to {FEASIBLE} hits", table.rows().count());
+    Worst::settle_all([places, times, moments]);
 }

@@ -9,11 +9,12 @@ use crate::contacts::{Contact, Contacts, MAX_CONTACTS, PerContact};
 use crate::counters::Counters;
 use crate::integrators::Step;
 use crate::plan::Plan;
-use crate::tolerance::{merge_angle_squared, rate_rounding, touch_distance};
+use crate::tolerance::{merge_angle_squared, rate_rounding, touch_breadth, touch_distance};
 use carom_geometry::bounds::amax;
 use carom_geometry::clearance::Entry;
 use carom_geometry::contact::MovingBall;
 use carom_geometry::mesh::{Fold, Mesh};
+use carom_geometry::order::by_size;
 use carom_geometry::plane::Side;
 use carom_geometry::rounding::contact_doubt;
 use carom_geometry::site::{Bend, RegionBound, Site};
@@ -115,9 +116,11 @@ impl<'a> Obstacles<'a> {
         counters: &mut Counters,
     ) -> Option<(f64, RegionBound)> {
         let mut first: Option<(f64, RegionBound)> = None;
-        let slack = touch_distance(self.plan.farthest + amax(&step.path.start().coords), 0.0);
+        let rounding = touch_distance(self.plan.farthest + amax(&step.path.start().coords), 0.0);
         for bound in self.mesh(contact.surface)?.region(contact.site?) {
             counters.clearances += 1;
+            let hollow = matches!(bound.next, Site::Edge { face, edge } if self.is_hollow(contact, face, edge));
+            let slack = if hollow { touch_breadth(rounding, self.mesh_radius) } else { rounding };
             if let Entry::At { f, .. } = slides_over(step, &bound, from, slack)
                 && first.is_none_or(|(best, _)| f < best)
             {
@@ -293,8 +296,7 @@ impl<'a> Obstacles<'a> {
     /// The order of contacts: by what they are and not by how they are numbered, so that the order of surfaces and faces does not matter.
     pub fn order(&self, a: &Contact, b: &Contact) -> Ordering {
         let rank = |c: &Contact| self.plan.surfaces[c.surface].rank;
-        let normals = a.normal.iter().zip(b.normal.iter()).map(|(a, b)| a.total_cmp(b));
-        rank(a).cmp(&rank(b)).then(normals.fold(Ordering::Equal, Ordering::then)).then_with(|| a.site.cmp(&b.site))
+        rank(a).cmp(&rank(b)).then_with(|| by_size(&a.normal, &b.normal)).then_with(|| a.site.cmp(&b.site))
     }
 
     /// The distance that is left between the ball at `position` and what it is in contact with.

@@ -91,6 +91,21 @@ pub enum SceneError {
         /// How far from the origin the scene reaches, in m.
         distance: f64,
     },
+    /// A ball starts between two parallel planes, and is wider than the gap.
+    #[error(
+        "ball {ball} is {diameter} m wide, but the gap between `{}` and `{}`, in which it starts, {width} m; give it a smaller radius or move a plane",
+        .surfaces[0], .surfaces[1]
+    )]
+    NoRoom {
+        /// Index of the ball in the scene, from 0.
+        ball: usize,
+        /// The names of the two surfaces.
+        surfaces: [String; 2],
+        /// The width of the gap in m.
+        width: f64,
+        /// The diameter of the ball in m.
+        diameter: f64,
+    },
     /// A quantity that f64 cannot square, as the loop must.
     #[error("{what} is {value:e}, but must be {expected}; give the scene in other units")]
     OutOfRange {

@@ -77,6 +77,7 @@ pub mod forces;
 pub mod surface;
 pub mod scene;
 pub mod integrators;
+mod room;
 pub mod plan;
 pub mod contacts;
 pub mod clock;

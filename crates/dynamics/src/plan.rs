@@ -10,6 +10,7 @@ use crate::forces::Forces;
 use crate::integrators::adaptive::Adaptive;
 use crate::integrators::damped::Damped;
 use crate::integrators::{Integrator, Stepping};
+use crate::room::check_room;
 use crate::scene::{Method, Scene};
 use crate::surface::{Material, Shape};
 use crate::tolerance::{
@@ -138,6 +139,7 @@ impl Plan {
                 return Err(SceneError::RadiusBelowResolution { ball, radius, least, distance });
             }
         }
+        check_room(scene, &planes, size.farthest)?;
         let mut by_name: Vec<usize> = (0..scene.surfaces.len()).collect();
         by_name.sort_by(|&a, &b| scene.surfaces[a].name.cmp(&scene.surfaces[b].name));
         let mut rank = vec![0; by_name.len()];

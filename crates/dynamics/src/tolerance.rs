@@ -107,6 +107,12 @@ pub fn touch_distance(farthest: f64, travelled: f64) -> f64 {
     64.0 * UNIT_ROUNDOFF * (farthest + travelled)
 }
 
+/// How far beside what is touched in a plane a ball of `radius` may be (m), that is within `distance` (m) of touching it: a hypotenuse of both, less the
+/// radius, is the distance.
+pub fn touch_breadth(distance: f64, radius: f64) -> f64 {
+    (distance * (2.0 * radius + distance)).sqrt()
+}
+
 /// How far the time of an impact may be off in s, whose clearance is known to `doubt` (m), at the speed `closing` >= 0 (m/s) and where the clearance
 /// bends by at most `bend` (m/s^2).
 ///
@@ -116,6 +122,10 @@ pub fn touch_distance(farthest: f64, travelled: f64) -> f64 {
 pub fn impact_time_bound(doubt: f64, closing: f64, bend: f64) -> f64 {
     if closing * closing >= 8.0 * bend * doubt { 2.0 * doubt / closing } else { 8.0 * (doubt / bend).sqrt() }
 }
+
+/// How much rounding may be of the products that are summed to a coefficient of the squared distance from an edge, of a path that leaves it: 16 units.
+/// The parts across the edge are off by 4 units of the whole term, of which the square takes twice as many, and the sums up to 6.
+pub const RETURN_ROUNDING: f64 = 16.0 * UNIT_ROUNDOFF;
 
 /// How far the end of a stretch of sliding may be off in s, that ends after `seconds` as a speed over an acceleration, both of them lengths of vectors
 /// or parts along one: 16 units.

@@ -130,12 +130,6 @@ pub fn amax(v: &Vector3<f64>) -> f64 {
     largest(largest(v.x.abs(), v.y.abs()), v.z.abs())
 }
 
-/// Whether an edge begins at `p` rather than at `q`, from whichever face it is seen.
-#[inline]
-pub(crate) fn is_lower(p: &Vector3<f64>, q: &Vector3<f64>) -> bool {
-    (p.x, p.y, p.z) <= (q.x, q.y, q.z)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

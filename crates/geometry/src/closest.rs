@@ -1,7 +1,8 @@
 //! The point of a triangle closest to a given one, for triangles of any shape and size.
 
-use crate::bounds::{amax, is_lower, largest};
+use crate::bounds::{amax, largest};
 use crate::normal::cross_compensated;
+use crate::order::by_size;
 use crate::rounding::{LEAST_SINE_SQUARED, NEEDLE_SINE_SQUARED, exponent, power_of_two, scale};
 use nalgebra::{Point3, Vector3};
 
@@ -213,9 +214,9 @@ impl Frame {
         if d6 >= 0.0 && d5 <= d6 {
             return at(c, cp, self.vertex(2));
         }
-        // From the end with the lower coordinates and without the third vertex: the same bits from each face that has the edge.
+        // From the end that is first by size and without the third vertex: the same bits from each face that has the edge.
         let along = |p: &Point3<f64>, q: &Point3<f64>, feature| {
-            let (from, to) = if is_lower(&p.coords, &q.coords) { (p, q) } else { (q, p) };
+            let (from, to) = if by_size(&p.coords, &q.coords).is_le() { (p, q) } else { (q, p) };
             let (edge, offset) = (to - from, x - from);
             let length = edge.norm_squared();
             if length == 0.0 {

@@ -4,6 +4,7 @@ mod cone;
 
 use crate::closest::Feature;
 use crate::mesh::{Fold, Mesh};
+use crate::order::by_size;
 use nalgebra::{Point3, Vector3};
 
 /// A place of a mesh: a face, an edge or a vertex. Each edge and vertex has one name, whichever face it was found by.
@@ -69,13 +70,12 @@ impl Mesh {
         Site::Vertex { vertex, face: self.vertex_faces(vertex).first().copied().unwrap_or(0) }
     }
 
-    /// The ends of an edge, the one with the lower coordinates first: the same bits from whichever face it is seen, and however that is
-    /// wound.
+    /// The ends of an edge, in the order of [`by_size`]: the same bits from whichever face it is seen, and however that is wound.
     pub(crate) fn edge_ends(&self, face: u32, edge: u8) -> [u32; 2] {
         let corners = self.faces()[face as usize];
         let [a, b] = [corners[edge as usize], corners[(edge as usize + 1) % 3]];
         let at = |v: u32| self.vertices()[v as usize];
-        if at(a).coords.as_slice() <= at(b).coords.as_slice() { [a, b] } else { [b, a] }
+        if by_size(&at(a).coords, &at(b).coords).is_le() { [a, b] } else { [b, a] }
     }
 
     /// The faces that `site` is, or that meet in it.

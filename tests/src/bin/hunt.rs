@@ -1,17 +1,12 @@
-//! The soak: `hunt FAMILY FROM COUNT` runs and checks seeds of a family (or `all`) and tallies what is wrong; `hunt FAMILY SEED show`
+//! The hunt: `hunt FAMILY FROM COUNT` runs and checks seeds of a family (or `all`) and tallies what is wrong; `hunt FAMILY SEED show`
 //! prints one run.
 
 use carom_dynamics::events::Ending;
 use carom_tests::hunt::{FAMILIES, Hunt, Run};
+use carom_tests::parallel;
 use std::collections::BTreeMap;
+use std::panic::catch_unwind;
 use std::process::ExitCode;
-use std::sync::{Arc, mpsc};
-use std::time::{Duration, Instant};
-
-/// A ball that takes longer hangs, and is left to itself.
-const PATIENCE: Duration = Duration::from_secs(20);
-/// A ball that takes longer is named.
-const LONG: Duration = Duration::from_secs(2);
 
 fn main() -> ExitCode {
     let args: Vec<String> = std::env::args().skip(1).collect();
@@ -19,7 +14,7 @@ fn main() -> ExitCode {
         [family, from, count] => from.parse::<u64>().ok().map(|from| (family, from, count)),
         _ => None,
     };
-    let hunt = Arc::new(Hunt::default());
+    let hunt = Hunt::default();
     match parsed {
         Some((family, seed, count)) if count == "show" => show(&hunt, family, seed),
         Some((family, from, count)) if let Ok(count) = count.parse() => {
@@ -34,52 +29,49 @@ fn main() -> ExitCode {
     }
 }
 
-/// Runs and checks one ball in a thread of its own.
-fn run(hunt: &Arc<Hunt>, family: &str, seed: u64) -> Result<Option<Run>, &'static str> {
-    let (send, receive) = mpsc::channel();
-    let (hunt, family) = (Arc::clone(hunt), family.to_owned());
-    std::thread::spawn(move || {
-        let _ = send.send(hunt.run(&family, seed));
-    });
-    receive.recv_timeout(PATIENCE).map_err(|e| match e {
-        mpsc::RecvTimeoutError::Timeout => "hangs",
-        mpsc::RecvTimeoutError::Disconnected => "panics",
-    })
+/// Runs and checks one ball; none if it found no place, and a word if it came to no end.
+fn run(hunt: &Hunt, family: &str, seed: u64) -> Result<Option<Run>, &'static str> {
+    match catch_unwind(|| hunt.run(family, seed)) {
+        Ok(Ok(run)) => Ok(run),
+        Ok(Err(_)) => Err("hangs"),
+        Err(_) => Err("panics"),
+    }
 }
 
 /// Whether `count` seeds of a family are sound; prints what is not.
-fn tally(hunt: &Arc<Hunt>, family: &str, from: u64, count: u64) -> bool {
-    let (mut ran, mut events) = (0, 0);
+fn tally(hunt: &Hunt, family: &str, from: u64, count: usize) -> bool {
+    let (mut ran, mut events, mut stretches) = (0, 0, 0);
     let mut bad: BTreeMap<String, Vec<u64>> = BTreeMap::new();
     let mut worst = BTreeMap::new();
-    for seed in from..from + count {
-        let began = Instant::now();
-        let run = match run(hunt, family, seed) {
-            Ok(Some(run)) => run,
-            Ok(None) => continue,
-            Err(what) => {
-                bad.entry(what.to_owned()).or_default().push(seed);
-                continue;
+    let of = |i: usize| from + i as u64;
+    // What is kept of a run is little beside its trajectory.
+    let runs = parallel::map(count, |i| {
+        run(hunt, family, of(i)).map(|run| {
+            run.map(|run| {
+                let names = run.flaws.iter().map(|flaw| flaw.split(',').next().unwrap_or(flaw).to_owned());
+                let ending = (run.outcome.ending != Ending::Completed).then(|| format!("{:?}", run.outcome.ending));
+                let (events, stretches) = (run.trajectory.events.len(), run.trajectory.segments.len());
+                (names.chain(ending).collect::<Vec<_>>(), events, stretches, run.worst)
+            })
+        })
+    });
+    for (i, run) in runs.into_iter().enumerate() {
+        match run {
+            Ok(None) => {}
+            Err(what) => bad.entry(what.to_owned()).or_default().push(of(i)),
+            Ok(Some((names, some, moved, by_flaw))) => {
+                ran += 1;
+                events += some;
+                stretches = stretches.max(moved);
+                names.into_iter().for_each(|name| bad.entry(name).or_default().push(of(i)));
+                for (flaw, ratio) in by_flaw {
+                    let worst: &mut f64 = worst.entry(flaw).or_default();
+                    *worst = worst.max(ratio);
+                }
             }
-        };
-        ran += 1;
-        events += run.trajectory.events.len();
-        for flaw in &run.flaws {
-            let name = flaw.split(',').next().unwrap_or(flaw);
-            bad.entry(name.to_owned()).or_default().push(seed);
-        }
-        if run.outcome.ending != Ending::Completed {
-            bad.entry(format!("{:?}", run.outcome.ending)).or_default().push(seed);
-        }
-        if began.elapsed() > LONG {
-            println!("{family} {seed} took {:?}, {} stretches", began.elapsed(), run.trajectory.segments.len());
-        }
-        for (flaw, ratio) in run.worst {
-            let worst: &mut f64 = worst.entry(flaw).or_default();
-            *worst = worst.max(ratio);
         }
     }
-    println!("{family}: {ran} balls, {events} events");
+    println!("{family}: {ran} balls, {events} events, {stretches} stretches at most");
     for (what, seeds) in &bad {
         println!("   {what}: {} {seeds:?}", seeds.len());
     }
@@ -88,7 +80,7 @@ fn tally(hunt: &Arc<Hunt>, family: &str, from: u64, count: u64) -> bool {
     bad.is_empty()
 }
 
-fn show(hunt: &Arc<Hunt>, family: &str, seed: u64) -> ExitCode {
+fn show(hunt: &Hunt, family: &str, seed: u64) -> ExitCode {
     if let Some((scene, _)) = hunt.scene(family, seed) {
         println!("{:?} {:?} {:?} {:?}", scene.method, scene.drag, scene.gravity, scene.balls);
         println!("{:?}", scene.surfaces.iter().map(|s| s.material).collect::<Vec<_>>());

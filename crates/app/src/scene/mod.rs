@@ -194,7 +194,9 @@ impl Loaded {
                 return self.refuse_ball(*ball, None, problem.help(help));
             }
             SceneError::RadiusMissing { ball, .. } => return self.refuse_ball(*ball, None, problem),
-            SceneError::RadiusBelowResolution { ball, .. } => return self.refuse_ball(*ball, Some("radius"), problem),
+            SceneError::RadiusBelowResolution { ball, .. } | SceneError::NoRoom { ball, .. } => {
+                return self.refuse_ball(*ball, Some("radius"), problem);
+            }
             SceneError::Ball { ball, source } => return self.refuse_ball(*ball, Some(source.name), problem),
             SceneError::Value(value) => path.push(Step::Key(value.name)),
             _ => {}

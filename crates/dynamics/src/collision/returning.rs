@@ -4,7 +4,7 @@ use super::Obstacles;
 use crate::contacts::{Contact, PerContact};
 use crate::counters::Counters;
 use crate::integrators::Step;
-use crate::tolerance::{rate_rounding, touch_distance};
+use crate::tolerance::{RETURN_ROUNDING, rate_rounding, touch_distance};
 use carom_geometry::bounds::amax;
 use carom_geometry::clearance::{Clearance, Entry};
 use carom_geometry::contact::Hold;
@@ -47,18 +47,26 @@ fn leaving(step: &Step, contact: &Contact) -> Clearance {
 /// For a parabola |w(f)|^2 - r^2, with w the part across the edge, is a quartic, solved like any clearance. The further terms of a path bring it
 /// nearer by |t3| f^3 + |t4| f^4 at most, so that it is off while |w| is more than r and that: while |w|^2 - r^2 is more than
 /// 2 r (|t3| f^3 + |t4| f^4) + (|t3| + |t4|)^2 f^4, since f is 1 at most. On a path straight back that is no sooner than it must be at f = 1.
+///
+/// A small ball that flies straight through the edge is on it for so short a part of its way that in rounded coefficients it is nowhere: each is
+/// less by what rounding may have added, [`RETURN_ROUNDING`] of the products that it is the sum of.
 fn leaves_until(step: &Step, bend: Bend, radius: f64, slope: f64) -> f64 {
     let zero = Vector3::zeros();
-    let term = |k: usize| bend.across(step.path.terms().get(k).unwrap_or(&zero));
+    let term = |k: usize| step.path.terms().get(k).unwrap_or(&zero);
     let away = bend.away_from(&step.path.start()).and_then(|away| away.try_normalize(0.0));
     let Some(w) = away.map(|n| n * radius) else { return 0.0 };
-    let (b, c) = (term(0), term(1));
-    let (third, fourth) = (term(2).norm(), term(3).norm());
+    let (b, c) = (bend.across(term(0)), bend.across(term(1)));
+    let [first, second, third, fourth] = [0, 1, 2, 3].map(|k| term(k).norm());
+    let further = third + fourth;
+    // What is across the edge is off by a share of the whole.
+    let (b_most, c_most) = (b.norm() + RETURN_ROUNDING * first, c.norm() + RETURN_ROUNDING * second);
+    let less = |products: f64| RETURN_ROUNDING * products;
     // The ball touches: the term of order 0 is zero, and that of order 1 is known from the contact.
     let leaving = 2.0 * radius * slope;
-    let gain = b.norm_squared() + 2.0 * w.dot(&c);
-    let cubic = 2.0 * (b.dot(&c) - radius * third);
-    let quartic = c.norm_squared() - 2.0 * radius * fourth - (third + fourth) * (third + fourth);
+    let gain = b.norm_squared() + 2.0 * w.dot(&c) - less(first * b_most + 2.0 * radius * second);
+    let cubic = 2.0 * (b.dot(&c) - radius * third) - less(first * c_most + second * b_most + 2.0 * radius * third);
+    let quartic = c.norm_squared() - 2.0 * radius * fourth - further * further;
+    let quartic = quartic - less(second * c_most + 2.0 * radius * fourth + further * further);
     let off = Clearance::new([0.0, leaving, gain, cubic, quartic]);
     off.first_entry(0.0, step.to).f().unwrap_or(f64::INFINITY)
 }

@@ -69,13 +69,16 @@ impl Adaptive {
     ) -> Step {
         let tolerance = self.tolerance.max(noise);
         let mut h = self.next.min(remaining);
+        // A step that is cut short tells nothing against the length that was right before; it may even be of no length at all.
+        let mut known = if h < self.next { self.next } else { 0.0 };
         for _ in 0..MAX_HALVINGS {
             let (step, error) = within(tolerance, state, h, &mut acceleration);
             if error <= 1.0 {
-                self.next = if error <= DOUBLE_BELOW { 2.0 * h } else { h };
+                self.next = known.max(if error <= DOUBLE_BELOW { 2.0 * h } else { h });
                 return step;
             }
             h *= 0.5;
+            known = 0.0;
         }
         self.next = h;
         within(tolerance, state, h, &mut acceleration).0
@@ -140,4 +143,28 @@ fn dense(k: &[Vector3<f64>; 7], h: f64) -> ([Vector3<f64>; 4], Vector3<f64>) {
     let end = change - k[6] * h - bend;
     let top = weighted(&D);
     ([change + bend, end - bend + top, -end - 2.0 * top, top], weighted(&E))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Point3;
+
+    #[test]
+    fn r03_a_step_that_is_cut_short_does_not_shorten_the_next() {
+        // A pendulum with a period of 6.3 s.
+        let state = State { position: Point3::new(1.0, 0.0, 0.0), velocity: Vector3::zeros() };
+        let pull = |s: &State, _: f64| -s.position.coords;
+        let mut pair = Adaptive::new(1e-6);
+        let long = pair.step(&state, 100.0, pull).seconds;
+        assert!((0.01..1.0).contains(&long), "{long}");
+        for short in [1e-3, 1e-300, 0.0] {
+            assert_eq!(pair.step(&state, short, pull).seconds, short);
+            assert!(pair.step(&state, 100.0, pull).seconds >= long);
+        }
+        // The first step of all may be one of no length.
+        let mut pair = Adaptive::new(1e-6);
+        assert_eq!(pair.step(&state, 0.0, pull).seconds, 0.0);
+        assert_eq!(pair.step(&state, 100.0, pull).seconds, long);
+    }
 }

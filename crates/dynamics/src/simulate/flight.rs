@@ -128,7 +128,7 @@ impl<O: Observer> Walk<'_, O> {
             self.correct(contact, tolerance);
             contact.rate = self.rate(step, hit, contact, &before, returns);
         }
-        if hit.f == 0.0 && contacts.iter().all(|c| c.rate >= 0.0) {
+        if self.standstill > 0 && contacts.iter().all(|c| c.rate >= 0.0) {
             // Nearest to the ball is an edge that it leaves, but by less than rounding: the search has seen the vertex at its end, to which the ball
             // comes nearer. Either is touched; the one that closes is answered, or it would be found for ever.
             let place = |c: &Contact| (c.surface, c.site);

@@ -1,8 +1,9 @@
 //! Looking for a contact where it seems to be: the plane that is seen from there often tells all at once.
 
 use super::{Contact, Entry, Query, Support};
-use crate::bounds::{is_lower, largest};
+use crate::bounds::largest;
 use crate::closest::Feature;
+use crate::order::by_size;
 use crate::rounding::{exponent, power_of_two};
 use nalgebra::Vector3;
 
@@ -62,7 +63,7 @@ impl Query<'_> {
             Feature::Face => return None,
             Feature::Edge(i) => {
                 let (p, q) = (corners[usize::from(i)], corners[(usize::from(i) + 1) % 3]);
-                if is_lower(&p, &q) { (p, q - p) } else { (q, p - q) }
+                if by_size(&p, &q).is_le() { (p, q - p) } else { (q, p - q) }
             }
             Feature::Vertex(i) => (corners[usize::from(i)], Vector3::zeros()),
         };

@@ -4,12 +4,12 @@ use super::{Surroundings, Work};
 use crate::bounds::{Aabb, amax, largest};
 use crate::closest::{Asked, Feature};
 use crate::mesh::{Fold, Mesh};
+use crate::order::by_size;
 use crate::rounding::{position_bound, screen_bound};
 use crate::screen::{heights, is_off_plane, is_over};
 use crate::site::Site;
 use nalgebra::{Point3, Vector3};
 use smallvec::SmallVec;
-use std::cmp::Ordering;
 
 /// What a ball touches.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -83,7 +83,12 @@ impl Mesh {
     /// None where the centre lies on it.
     pub fn nearest_of(&self, face: u32, centre: &Point3<f64>) -> Option<Touch> {
         let closest = Asked::new(self.triangle_from(face, centre)).closest(&Vector3::zeros());
-        closest.offset.try_normalize(0.0).map(|normal| Touch { site: self.site(face, closest.feature), normal })
+        let site = self.site(face, closest.feature);
+        let normal = match site {
+            Site::Face(face) => self.facing(face, &closest.offset),
+            _ => closest.offset.try_normalize(0.0),
+        };
+        normal.map(|normal| Touch { site, normal })
     }
 
     /// Whether the fold at `edge` of `face` is hollow on the side that `away` points to, and `away` at least `height` above the face.
@@ -166,10 +171,7 @@ impl<'a> Touching<'a> {
         let Self { mesh, mut found, .. } = self;
         if found.len() > 1 {
             // Of the offsets to an edge or a vertex from its faces, which differ by rounding, the same one in whatever order they come.
-            let order = |a: &Vector3<f64>, b: &Vector3<f64>| {
-                a.iter().zip(b.iter()).map(|(a, b)| a.total_cmp(b)).find(|o| o.is_ne()).unwrap_or(Ordering::Equal)
-            };
-            found.sort_by(|(a, u), (b, v)| a.cmp(b).then_with(|| order(u, v)));
+            found.sort_by(|(a, u), (b, v)| a.cmp(b).then_with(|| by_size(u, v)));
             found.dedup_by_key(|(site, _)| *site);
         }
         let touch = |&(site, away): &(Site, _)| mesh.normal_at(site, &away).map(|normal| Touch { site, normal });

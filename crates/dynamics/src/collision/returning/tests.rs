@@ -33,12 +33,30 @@ fn r28_what_goes_straight_up_is_free_until_it_is_back() {
                 let [edge, vertex] = edge_and_vertex();
                 let up = step(&[away * v + sideways, away * -c, away * -d, away * -e]);
                 let until = leaves_until(&up, edge, RADIUS, v);
-                assert!((1.0 - 8.0 * UNIT_ROUNDOFF..=1.0).contains(&until), "back at {until} with {d} and {e}");
+                // Early by what rounding is of the products, over the slope of |w|^2 there; the slope is no less on the way to it.
+                let most = v + c + d + e + sideways.norm();
+                let (products, slope) = (most * (most + 2.0 * RADIUS), 2.0 * RADIUS * (c + 2.0 * d + 3.0 * e));
+                let early = 1.0 - 2.0 * RETURN_ROUNDING * products / slope;
+                assert!((early..=1.0).contains(&until), "back at {until}, not from {early} on, with {d} and {e}");
                 // Along the edge it is nothing, about a vertex it leads away.
                 let about = leaves_until(&up, vertex, RADIUS, v);
                 let expected = if sideways == Vector3::zeros() { until } else { f64::INFINITY };
                 assert_eq!(about, expected);
             }
+        }
+    }
+}
+
+#[test]
+fn r28_what_flies_straight_through_an_edge_comes_back_to_it_however_small() {
+    let [edge, vertex] = edge_and_vertex();
+    for (k, (v, c)) in (0..40).flat_map(|k| [(1.0, 1.0), (1.0, 3.0), (0.3, 7.1)].map(|speeds| (k, speeds))) {
+        let radius = RADIUS * 0.5f64.powi(k);
+        for (bend, sideways) in [(edge, Vector3::y() * 3.0), (vertex, Vector3::zeros())] {
+            let mut up = step(&[Vector3::z() * v + sideways, Vector3::z() * -c]);
+            up.path = Path::from_terms(Point3::new(0.0, 0.0, radius), up.path.terms());
+            let until = leaves_until(&up, bend, radius, v);
+            assert!(until <= v / c, "not back at {until} with a radius of 2^-{}", k + 3);
         }
     }
 }
