@@ -5,7 +5,7 @@ use crate::bounds::{Aabb, amax, largest};
 use crate::closest::{Asked, Feature};
 use crate::mesh::{Fold, Mesh};
 use crate::order::by_size;
-use crate::rounding::{position_bound, screen_bound};
+use crate::rounding::{hold_bound, position_bound, screen_bound};
 use crate::screen::{heights, is_off_plane, is_over};
 use crate::site::Site;
 use nalgebra::{Point3, Vector3};
@@ -137,13 +137,14 @@ impl<'a> Touching<'a> {
         if is_off_plane(&heights, reach + self.doubt) {
             return;
         }
+        // Where the normal is the face's own, and not shared or declared, and rounding does not decide.
         let [height, b, c] = heights;
-        // What does not lie across the normal, to rounding, has been declared to.
-        let is_plane = largest((b - height).abs(), (c - height).abs()) <= self.doubt;
-        if is_plane && is_over(&corners, normal) {
-            if height.abs() <= reach {
-                self.found.push((Site::Face(face), normal * -height));
-            }
+        let bound = hold_bound(largest(largest(amax(&corners[0]), amax(&corners[1])), amax(&corners[2])));
+        if largest((b - height).abs(), (c - height).abs()) <= bound
+            && height.abs() + 2.0 * bound <= reach
+            && is_over(&corners, normal)
+        {
+            self.found.push((Site::Face(face), normal * -height));
             return;
         }
         let asked = Asked::new(corners);
