@@ -93,7 +93,7 @@ pub enum SceneError {
     },
     /// A ball starts between two parallel planes, and is wider than the gap.
     #[error(
-        "ball {ball} is {diameter} m wide, but the gap between `{}` and `{}`, in which it starts, {width} m; give it a smaller radius or move a plane",
+        "ball {ball} is {diameter} m wide and starts between `{}` and `{}`, which are {width} m apart; give it a smaller radius or move a plane",
         .surfaces[0], .surfaces[1]
     )]
     NoRoom {

@@ -48,17 +48,19 @@ fn material(
     materials: &BTreeMap<String, Option<Material>>,
 ) -> Option<Material> {
     let names = || materials.keys().map(String::as_str);
+    let help = |word: &str, what: &str| match materials.is_empty() {
+        true => "add a material to the scene, such as [materials.wall] with `restitution`, and name it here".to_owned(),
+        false => choose(word, what, names()),
+    };
     match &table.material {
         None => {
             let problem = Problem::new(format!("the surface {:?} has no material", table.name));
-            let help = choose("", "add `material`, one of the scene's", names());
-            builder.refuse(at!["surfaces", i, "name"], problem.help(help));
+            builder.refuse(at!["surfaces", i, "name"], problem.help(help("", "add `material`, one of the scene's")));
             None
         }
         Some(name) => materials.get(name).copied().unwrap_or_else(|| {
             let problem = Problem::new(format!("unknown material {name:?}"));
-            builder
-                .refuse(at!["surfaces", i, "material"], problem.help(choose(name, "the scene's materials", names())));
+            builder.refuse(at!["surfaces", i, "material"], problem.help(help(name, "the scene's materials")));
             None
         }),
     }

@@ -112,6 +112,9 @@ scenes! {
     two_laws_of_friction: "coulomb = 0.6" => "coulomb = 0.6, linear = 0.1";
     unknown_law_of_friction: "coulomb" => "colomb";
     negative_radius: "radius = 0.033" => "radius = -0.033";
+    no_room: "[[balls]]" => "[[surfaces]]\nname = \"shelf\"\nmaterial = \"clay\"\nshape = { plane = { point = [0, 0, 0.98], normal = [0, 0, 1] } }\n\
+        [[surfaces]]\nname = \"lid\"\nmaterial = \"clay\"\nshape = { plane = { point = [0, 0, 1.03], normal = [0, 0, 1] } }\n[[balls]]";
+    no_materials: "[materials.clay]\nrestitution = 0.75\nfriction = { coulomb = 0.6 }" => "";
     zero_mass: "mass = 0.058" => "mass = 0";
     drag_without_mass: "mass = 0.058" => "";
     wind_without_drag: "drag = { linear = 0.05 }" => "";
