@@ -72,8 +72,8 @@ fn r28_what_once_went_wrong_stays_right() {
         ("bunny", &[10450, 20106]),
         // A fold so shallow that three faces were held at once; steps of no length.
         ("terrain", &[10079, 916]),
-        // Elastic walls at the end of rails.
-        ("wedge", &[281, 697, 1368, 1372, 2009, 2230, 11041]),
+        // Elastic walls at the end of rails; a groove of unequal sides, driven by its rail.
+        ("wedge", &[281, 697, 1368, 1372, 2009, 2230, 11041, 3533]),
     ];
     let hunt = Hunt::default();
     for (family, seed) in found.into_iter().flat_map(|(family, seeds)| seeds.iter().map(move |seed| (family, *seed))) {

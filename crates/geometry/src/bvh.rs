@@ -1,13 +1,23 @@
 //! A bounding-volume tree over boxes, asked by fat segments.
 
 mod build;
+mod collapse;
 mod frame;
+mod lanes;
+mod leaves;
+mod prism;
 
 use frame::{Frame, LocalSegment};
+use lanes::Sheared;
+pub(crate) use leaves::Seen;
+use leaves::{Boxes, Faces, Leaves, Show, ShowBoxes, ShowFaces, Unit};
 use multiversion::multiversion;
+use multiversion::target::match_target;
 use nalgebra::Point3;
+use prism::Prism;
 
 use crate::bounds::Aabb;
+use crate::shear::Shear;
 use wide::f32x8;
 
 /// Children of a node: two SSE registers, one AVX register.
@@ -26,12 +36,15 @@ pub struct FatSegment {
     pub radius: f64,
 }
 
+/// For each axis the least and the largest coordinate of each child of a node.
+type Planes = [[[f32; WIDTH]; 2]; 3];
+
 /// Eight boxes and what is in them, in arrays that one loop of vector instructions reads.
 #[derive(Debug, Clone)]
 #[repr(align(32))]
 struct Node {
     /// For each axis the least and the largest coordinate of each child; +infinity and -infinity where there is none.
-    planes: [[[f32; WIDTH]; 2]; 3],
+    planes: Planes,
     child: [Child; WIDTH],
 }
 
@@ -55,7 +68,7 @@ impl Node {
     }
 }
 
-/// A child of a node: the index of a node, or `LEAF`, how many items less one, and the first of them.
+/// A child of a node: the index of a node, or `LEAF`, a count from 1 to 4 less one, and a place among the leaves.
 #[derive(Debug, Clone, Copy, Default)]
 struct Child(u32);
 
@@ -69,16 +82,22 @@ impl Child {
         Self(Self::LEAF | ((count as u32 - 1) << Self::COUNT_SHIFT) | start as u32)
     }
 
-    /// The same child after so many more nodes before it.
-    fn after(self, nodes: u32) -> Self {
-        if self.0 & Self::LEAF == 0 { Self(self.0 + nodes) } else { self }
+    #[inline(always)]
+    fn is_leaf(self) -> bool {
+        self.0 & Self::LEAF != 0
     }
 
-    /// The places of its items, unless it is a node.
-    fn items(self) -> Option<std::ops::Range<usize>> {
+    /// The same child after so many more nodes and units of leaves before it.
+    fn after(self, nodes: u32, units: u32) -> Self {
+        Self(self.0 + if self.is_leaf() { units } else { nodes })
+    }
+
+    /// The place of a leaf, and from there on its count.
+    #[inline(always)]
+    fn range(self) -> std::ops::Range<usize> {
         let start = (self.0 & (Self::MOST_ITEMS as u32 - 1)) as usize;
         let count = ((self.0 >> Self::COUNT_SHIFT) & 3) as usize + 1;
-        (self.0 & Self::LEAF != 0).then_some(start..start + count)
+        start..start + count
     }
 }
 
@@ -117,8 +136,9 @@ pub struct Bvh {
     bounds: Aabb,
     frame: Frame,
     nodes: Vec<Node>,
-    /// Item numbers in the order of the leaves.
-    items: Vec<u32>,
+    leaves: Leaves,
+    /// How many items there are.
+    len: usize,
     /// The most entries a traversal can have pending.
     stack: usize,
 }
@@ -130,12 +150,20 @@ impl Bvh {
     /// Takes time n log n, on all cores, and is the same tree on however many. Splits by the surface area heuristic over bins (Wald 2007, "On fast construction of
     /// SAH-based bounding volume hierarchies"), and by the median where that would get too deep.
     pub fn build(boxes: &[Aabb]) -> Self {
-        Self::build_by(boxes.len(), |i| boxes[i])
+        build::build(boxes.len(), &Boxes(|i| boxes[i]))
     }
 
-    /// The tree over `count` boxes that are computed as often as they are needed, and never stored.
-    pub(crate) fn build_by(count: usize, box_of: impl Fn(usize) -> Aabb + Sync) -> Self {
-        build::build(count, box_of)
+    /// The tree over `count` faces with these boxes and corners, which are computed as often as they are needed. A face whose box is empty is in no answer.
+    pub(crate) fn of_faces(
+        count: usize,
+        bounds: impl Fn(usize) -> Aabb + Sync,
+        corners: impl Fn(u32) -> [Point3<f64>; 3] + Sync,
+    ) -> Self {
+        if count <= leaves::MOST_FACES {
+            build::build(count, &Faces { bounds, corners })
+        } else {
+            build::build(count, &Boxes(bounds))
+        }
     }
 
     /// The least box around all items, exactly.
@@ -145,17 +173,17 @@ impl Bvh {
 
     /// How many items it holds.
     pub fn len(&self) -> usize {
-        self.items.len()
+        self.len
     }
 
     /// Whether it holds nothing.
     pub fn is_empty(&self) -> bool {
-        self.items.is_empty()
+        self.len == 0
     }
 
     /// The memory it takes, in bytes.
     pub fn bytes(&self) -> usize {
-        self.nodes.len() * size_of::<Node>() + self.items.len() * size_of::<u32>()
+        self.nodes.len() * size_of::<Node>() + self.leaves.bytes()
     }
 
     /// Shows `hit` every item whose box meets `segment`, and some near misses, nearly front to back; returns the number
@@ -165,8 +193,22 @@ impl Bvh {
     /// segment enters later are left out. The limit never grows again; return infinity to set none. A segment with a
     /// coordinate that is not finite is shown everything.
     pub fn visit(&self, segment: &FatSegment, mut hit: impl FnMut(u32) -> f64) -> u64 {
+        self.look_along(segment, &Shear::new(&segment.from, &segment.to), |seen| hit(seen.item))
+    }
+
+    /// [`visit`](Self::visit) with what is known of the items; `shear` is that of the segment.
+    #[inline]
+    pub(crate) fn look_along(&self, segment: &FatSegment, shear: &Shear, hit: impl FnMut(Seen<'_>) -> f64) -> u64 {
         let Some(local) = self.frame.segment(segment, &self.bounds) else { return 0 };
-        self.with_stack(|stack| walk(&self.nodes, &self.items, &local, stack, &mut hit))
+        let (mut inline, mut heap) = ([Pending::default(); INLINE_STACK], Vec::new());
+        let stack = self.stack(&mut inline, &mut heap);
+        match &self.leaves {
+            Leaves::Boxes(items) => walk(&self.nodes, &local, stack, &mut ShowBoxes { items, hit }),
+            Leaves::Faces(units) => {
+                let prism = Prism::around(segment, shear, &self.bounds);
+                walk(&self.nodes, &local, stack, &mut ShowFaces { units, prism, sheared: Sheared::default(), hit })
+            }
+        }
     }
 
     /// Shows `hit` every item whose box meets `query`, and some near misses; returns the number of nodes looked at.
@@ -175,80 +217,105 @@ impl Bvh {
             return 0;
         }
         let (lo, hi) = self.frame.outer_box(query);
-        self.with_stack(|stack| {
-            let (mut pending, mut visited) = (1, 0);
-            while pending > 0 {
-                pending -= 1;
-                let child = stack[pending].child();
-                if let Some(items) = child.items() {
-                    self.items[items].iter().for_each(|&item| hit(item));
-                    continue;
-                }
-                let Some(node) = self.nodes.get(child.0 as usize) else { continue };
-                visited += 1;
-                let mut met = node.meets(&lo, &hi);
-                while met != 0 {
-                    stack[pending] = node.take(&mut met, &[0.0; WIDTH]);
-                    pending += 1;
-                }
+        let hit = |seen: Seen<'_>| {
+            hit(seen.item);
+            f64::INFINITY
+        };
+        let (mut inline, mut heap) = ([Pending::default(); INLINE_STACK], Vec::new());
+        let stack = self.stack(&mut inline, &mut heap);
+        match &self.leaves {
+            Leaves::Boxes(items) => walk_box(&self.nodes, (&lo, &hi), stack, &mut ShowBoxes { items, hit }),
+            Leaves::Faces(units) => {
+                let prism = Prism::of_box(query);
+                let mut leaves = ShowFaces { units, prism, sheared: Sheared::default(), hit };
+                walk_box(&self.nodes, (&lo, &hi), stack, &mut leaves)
             }
-            visited
-        })
-    }
-
-    fn with_stack(&self, walk: impl FnOnce(&mut [Pending]) -> u64) -> u64 {
-        // The first entry is the root, which is Child(0).
-        if self.stack <= INLINE_STACK {
-            walk(&mut [Pending::default(); INLINE_STACK])
-        } else {
-            walk(&mut vec![Pending::default(); self.stack])
         }
     }
+
+    /// Room for what can be pending: `inline` if that is enough. The first entry is the root, which is Child(0).
+    #[inline]
+    fn stack<'a>(&self, inline: &'a mut [Pending], heap: &'a mut Vec<Pending>) -> &'a mut [Pending] {
+        if self.stack <= inline.len() {
+            return inline;
+        }
+        heap.resize(self.stack, Pending::default());
+        heap
+    }
 }
 
-/// [`walk_plainly`], compiled once more for processors with wider registers: by the same operations in the same order, which round alike.
+/// Goes through the nodes that meet the box from `lo` to `hi`, and shows the leaves that are in them; returns how many nodes there were.
+fn walk_box(nodes: &[Node], (lo, hi): (&[f32; 3], &[f32; 3]), stack: &mut [Pending], leaves: &mut impl Show) -> u64 {
+    let (mut pending, mut visited) = (1, 0);
+    while pending > 0 {
+        pending -= 1;
+        let child = stack[pending].child();
+        if child.is_leaf() {
+            leaves.show(child, lanes::narrow::screen);
+            continue;
+        }
+        let Some(node) = nodes.get(child.0 as usize) else { continue };
+        visited += 1;
+        let mut met = node.meets(lo, hi);
+        while met != 0 {
+            stack[pending] = node.take(&mut met, &[0.0; WIDTH]);
+            pending += 1;
+        }
+    }
+    visited
+}
+
+/// [`walk_by`] the widest registers that the processor has: by the same operations in the same order, which round alike.
 #[multiversion(targets("x86_64+avx2"))]
-fn walk(
-    nodes: &[Node],
-    items: &[u32],
-    segment: &LocalSegment,
-    stack: &mut [Pending],
-    hit: &mut impl FnMut(u32) -> f64,
-) -> u64 {
-    walk_plainly(nodes, items, segment, stack, hit)
+fn walk(nodes: &[Node], segment: &LocalSegment, stack: &mut [Pending], leaves: &mut impl Show) -> u64 {
+    match_target! {
+        "x86_64+avx2" => walk_by(
+            nodes,
+            segment,
+            stack,
+            leaves,
+            |planes: &Planes, limit| lanes::avx2::entries(segment, planes, limit),
+            |leaf: &[Unit], prism: &Prism, sheared: &mut Sheared| lanes::avx2::screen(leaf, prism, sheared),
+        ),
+        _ => walk_narrow(nodes, segment, stack, leaves),
+    }
 }
 
-/// Goes through the nodes that the segment enters, and shows `hit` the items that are in them; returns how many nodes there were.
+fn walk_narrow(nodes: &[Node], segment: &LocalSegment, stack: &mut [Pending], leaves: &mut impl Show) -> u64 {
+    let entries = |planes: &Planes, limit| lanes::narrow::entries(segment, planes, limit);
+    walk_by(nodes, segment, stack, leaves, entries, lanes::narrow::screen)
+}
+
+/// Goes through the nodes that the segment enters, and shows the leaves that are in them; returns how many nodes there were.
 #[inline(always)] // so that it is compiled with `walk`
-fn walk_plainly(
+fn walk_by(
     nodes: &[Node],
-    items: &[u32],
     segment: &LocalSegment,
     stack: &mut [Pending],
-    hit: &mut impl FnMut(u32) -> f64,
+    leaves: &mut impl Show,
+    entries: impl Fn(&Planes, f32) -> ([f32; WIDTH], u32),
+    screen: impl Fn(&[Unit], &Prism, &mut Sheared) -> u32,
 ) -> u64 {
     let (mut pending, mut visited) = (0, 0);
-    // The limit that `hit` gave last, and the same in the part of the segment that is near the tree.
+    // The limit that a leaf gave last, and the same in the part of the segment that is near the tree.
     let (mut last, mut limit) = (f64::INFINITY, 1.0_f32);
     let mut child = Child::default();
     loop {
-        if let Some(places) = child.items() {
-            for &item in &items[places] {
-                let s = hit(item);
-                if s < last {
-                    last = s;
-                    let until = segment.local_limit(s);
-                    limit = if until < limit { until } else { limit };
-                }
+        if child.is_leaf() {
+            let s = leaves.show(child, &screen);
+            if s < last {
+                last = s;
+                let until = segment.local_limit(s);
+                limit = if until < limit { until } else { limit };
             }
         } else if let Some(node) = nodes.get(child.0 as usize) {
             visited += 1;
-            let (entries, mut met) = segment.entries(&node.planes, limit);
+            let (entered, mut met) = entries(&node.planes, limit);
             if met != 0 {
                 let first = pending;
-                let mut nearest = node.take(&mut met, &entries);
+                let mut nearest = node.take(&mut met, &entered);
                 while met != 0 {
-                    let next = node.take(&mut met, &entries);
+                    let next = node.take(&mut met, &entered);
                     let farther = if next > nearest { next } else { nearest };
                     nearest = if next > nearest { nearest } else { next };
                     // The nearer the later, so that it is popped the sooner.

@@ -58,6 +58,7 @@ pub use nalgebra;
 pub mod error;
 pub mod rounding;
 pub mod bounds;
+mod shear;
 pub mod order;
 pub mod bvh;
 mod exact;

@@ -200,10 +200,11 @@ impl Mesh {
         topology: Topology,
         repeats: &BTreeSet<u32>,
     ) -> Self {
-        let bvh = Bvh::build_by(faces.len(), |f| {
-            let box_of = || Aabb::of_points(&corners(&vertices, &faces[f]));
-            if repeats.contains(&(f as u32)) { Aabb::empty() } else { box_of() }
-        });
+        let corners_of = |f: u32| corners(&vertices, &faces[f as usize]);
+        let bounds_of = |f: usize| {
+            if repeats.contains(&(f as u32)) { Aabb::empty() } else { Aabb::of_points(&corners_of(f as u32)) }
+        };
+        let bvh = Bvh::of_faces(faces.len(), bounds_of, corners_of);
         let vertex_faces = VertexFaces::of(vertices.len(), &faces, repeats);
         let face_size = bvh.bounds().extent().amax() / (faces.len() as f64).sqrt();
         Self { vertices, faces, normals, topology, vertex_faces, bvh, face_size }

@@ -26,9 +26,14 @@ impl Mesh {
         let mut best: Option<Pierced> = None;
         let sheared = Sheared::new(from, to);
         let segment = FatSegment { from: *from, to: *to, radius: 0.0 };
-        work.nodes += self.bvh().visit(&segment, |face| {
+        work.nodes += self.bvh().look_along(&segment, sheared.shear(), |seen| {
             work.triangles += 1;
-            if let SegmentHit::Hit { f, feature, .. } = sheared.hits(self.corners(face))
+            let face = seen.item;
+            let hit = match &seen.corners {
+                Some(known) => sheared.hits_sheared(&known.sheared(), known.turn_bound, || known.points()),
+                None => sheared.hits(self.corners(face)),
+            };
+            if let SegmentHit::Hit { f, feature, .. } = hit
                 && best.is_none_or(|found| (f, face) < (found.f, found.face))
             {
                 best = Some(Pierced { f, face, feature });

@@ -44,6 +44,14 @@ pub(crate) fn sheared_bound(across: f64, along: f64) -> f64 {
     64.0 * UNIT_ROUNDOFF * (m * (across + 4.0 * UNIT_ROUNDOFF * m)) + f64::MIN_POSITIVE * (across + 2.0)
 }
 
+/// Bound on the error of a coordinate of a point that was sheared as for [`sheared_bound`], across or along: `size` is not below the sum of what its
+/// coordinates are from the start of the segment.
+///
+/// 8 u m is that of one across, m = |r| + 2 |z| at most, and u |z| that of the one along; what is over covers the rounding of `size`.
+pub(crate) fn prism_bound(size: f64) -> f64 {
+    24.0 * UNIT_ROUNDOFF * size + f64::MIN_POSITIVE
+}
+
 /// Bound on the error of n.(x - p) as computed from f64 n, x and p: `magnitude` = fl(|n1 d1| + |n2 d2| + |n3 d3|), d = fl(x - p).
 ///
 /// A term passes a subtraction, a product and two sums: gamma(4) (|n1 d1| + ...) in exact arithmetic; 4 u + 64 u^2 also covers the

@@ -53,10 +53,26 @@ impl Sheared {
     /// [`segment_hits_triangle`], of a segment that is held against many.
     #[inline]
     pub(crate) fn hits(&self, corners: [&Point3<f64>; 3]) -> SegmentHit {
-        match self.passage(corners) {
+        self.hits_at(self.passage(corners), || corners.map(|v| *v))
+    }
+
+    /// The same of a triangle whose corners are given as they are sheared, with a bound for how they turn; it is `triangle`.
+    #[inline]
+    pub(crate) fn hits_sheared(
+        &self,
+        corners: &[[f64; 2]; 3],
+        bound: f64,
+        triangle: impl FnOnce() -> [Point3<f64>; 3],
+    ) -> SegmentHit {
+        self.hits_at(self.passage_of(corners, bound), triangle)
+    }
+
+    #[inline]
+    fn hits_at(&self, passage: Passage, triangle: impl FnOnce() -> [Point3<f64>; 3]) -> SegmentHit {
+        match passage {
             Passage::Outside => SegmentHit::Miss,
-            Passage::Inside => self.crossing(&corners.map(|v| *v), |_, _| Some(Feature::Face)),
-            Passage::Near => self.crossing(&corners.map(|v| *v), Self::feature),
+            Passage::Inside => self.crossing(&triangle(), |_, _| Some(Feature::Face)),
+            Passage::Near => self.crossing(&triangle(), Self::feature),
         }
     }
 

@@ -1,15 +1,14 @@
 //! Building the tree: binned surface area heuristic, straight into wide nodes.
 
+use super::collapse::Cuts;
 use super::frame::Frame;
+use super::leaves::Content;
 use super::{Bvh, Child, Node, WIDTH};
 use crate::bounds::Aabb;
 use rayon::prelude::*;
+use smallvec::SmallVec;
 use wide::f32x4;
 
-/// A group of up to this many items is not split while there is room in the node.
-const LEAF: usize = 2;
-/// A group of up to this many items is not worth a node of its own.
-const LARGEST_LEAF: usize = 4;
 /// A group of up to this many items is not worth the while of several cores.
 const ON_ONE_CORE: usize = 4096;
 /// Bins an axis is cut into.
@@ -19,7 +18,7 @@ const HEURISTIC_LEVELS: usize = 16;
 
 /// An item's box in the tree's coordinates, and its number in the fourth place of `lo`, where no coordinate is: half of a line of the cache.
 #[derive(Debug, Clone, Copy)]
-struct Item {
+pub(super) struct Item {
     bounds: Box32,
 }
 
@@ -36,7 +35,7 @@ impl Item {
 
 /// A box: its corners, each with a fourth number of no meaning.
 #[derive(Debug, Clone, Copy)]
-struct Box32 {
+pub(super) struct Box32 {
     lo: f32x4,
     hi: f32x4,
 }
@@ -73,29 +72,33 @@ impl Box32 {
 
     /// Half the surface, to which the chance of being met is proportional; -infinity or NaN never, 0 if empty.
     #[inline]
-    fn area(&self) -> f32 {
+    pub(super) fn area(&self) -> f32 {
         let [x, y, z] = self.sides();
         x * y + y * z + z * x
     }
 
     /// Sum of the sides, the measure where there is no surface.
     #[inline]
-    fn girth(&self) -> f32 {
+    pub(super) fn girth(&self) -> f32 {
         self.sides().iter().sum()
     }
 }
 
 /// A range of the items that becomes one child.
 #[derive(Debug, Clone, Copy)]
-struct Group {
+pub(super) struct Group {
     start: usize,
     end: usize,
-    bounds: Box32,
+    pub(super) bounds: Box32,
+    /// Whether it fits into a leaf.
+    pub(super) fits: bool,
 }
 
 impl Group {
-    fn of(items: &[Item], start: usize, end: usize) -> Self {
-        Self { start, end, bounds: Box32::of(&items[start..end]) }
+    fn of<C: Content>(content: &C, items: &[Item], start: usize, end: usize) -> Self {
+        let own = &items[start..end];
+        let fits = own.len() <= C::LARGEST && content.fit(own.iter().map(Item::id));
+        Self { start, end, bounds: Box32::of(own), fits }
     }
 
     fn len(&self) -> usize {
@@ -103,7 +106,7 @@ impl Group {
     }
 }
 
-pub(super) fn build(count: usize, box_of: impl Fn(usize) -> Aabb + Sync) -> Bvh {
+pub(super) fn build<C: Content>(count: usize, content: &C) -> Bvh {
     // Infinite sides come in to the largest number: no finite segment can tell.
     let finite = |b: &Aabb| {
         let clamp = |c: f64| c.clamp(-f64::MAX, f64::MAX);
@@ -111,7 +114,7 @@ pub(super) fn build(count: usize, box_of: impl Fn(usize) -> Aabb + Sync) -> Bvh 
     };
     let kept = || {
         let all = (0..count.min(Child::MOST_ITEMS)).into_par_iter().with_min_len(ON_ONE_CORE);
-        all.map(|i| (i as u32, box_of(i))).filter(|(_, b)| !b.is_empty()).map(|(i, b)| (i, finite(&b)))
+        all.map(|i| (i as u32, content.bounds(i))).filter(|(_, b)| !b.is_empty()).map(|(i, b)| (i, finite(&b)))
     };
     let bounds = kept().map(|(_, b)| b).reduce(Aabb::empty, |all, b| all.union(&b));
     let frame = Frame::of(&bounds);
@@ -121,69 +124,103 @@ pub(super) fn build(count: usize, box_of: impl Fn(usize) -> Aabb + Sync) -> Bvh 
             Item::new(id, lo, hi)
         })
         .collect();
-    let all = Group::of(&items, 0, items.len());
-    let mut whole = if items.is_empty() { Part::default() } else { Part::of(&mut items, 0, all, 1) };
+    let all = Group::of(content, &items, 0, items.len());
+    let mut whole = if items.is_empty() { Part::default() } else { Part::of(content, &mut items, all, 1) };
     whole.nodes.shrink_to_fit();
     Bvh {
         bounds,
         frame,
-        items: items.iter().map(Item::id).collect(),
+        leaves: C::leaves(whole.units),
+        len: items.len(),
         nodes: whole.nodes,
         // Each level leaves all children but one pending.
         stack: (WIDTH - 1) * whole.levels + WIDTH,
     }
 }
 
-/// A part of the tree: its nodes, the root first and counted from it, and how many levels it goes down to from the top of the whole.
-#[derive(Default)]
-struct Part {
+impl Node {
+    fn set(&mut self, j: usize, child: Child, group: &Group) {
+        self.child[j] = child;
+        let (lo, hi) = (group.bounds.lo.to_array(), group.bounds.hi.to_array());
+        for (i, [least, largest]) in self.planes.iter_mut().enumerate() {
+            (least[j], largest[j]) = (lo[i], hi[i]);
+        }
+    }
+}
+
+/// A part of the tree: its nodes, the root first and counted from it, its leaves, and how many levels it goes down to from the top of the whole.
+struct Part<C: Content> {
     nodes: Vec<Node>,
+    units: Vec<C::Unit>,
     levels: usize,
 }
 
-impl Part {
-    /// The part over `items`, of which the first has the place `first` in the whole. `all` are all of them.
-    fn of(items: &mut [Item], first: usize, all: Group, level: usize) -> Self {
+impl<C: Content> Default for Part<C> {
+    fn default() -> Self {
+        Self { nodes: Vec::new(), units: Vec::new(), levels: 0 }
+    }
+}
+
+impl<C: Content> Part<C> {
+    /// The part over `items`, of which `all` are all.
+    fn of(content: &C, items: &mut [Item], all: Group, level: usize) -> Self {
         let mut part = Self::default();
-        part.add(items, first, all, level);
+        part.add(content, items, all, level);
         part
     }
 
     /// Adds the node for `all` and what is below; returns its number.
-    fn add(&mut self, items: &mut [Item], first: usize, all: Group, level: usize) -> u32 {
-        self.levels = self.levels.max(level);
-        let (groups, count) = groups(items, all, level);
-        let number = self.nodes.len();
-        self.nodes.push(Node {
-            planes: [[[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]]; 3],
-            child: [Child::default(); WIDTH],
-        });
-        let mut below = if all.len() > ON_ONE_CORE {
-            Self::in_parallel(items, first, &groups[..count], level)
-        } else {
-            std::array::from_fn(|_| None)
-        };
+    fn add(&mut self, content: &C, items: &mut [Item], all: Group, level: usize) -> u32 {
+        if all.len() <= ON_ONE_CORE {
+            let cuts = Cuts::of(content, items, all);
+            return self.add_cuts(content, items, &cuts, cuts.root(), level);
+        }
+        let (groups, count) = groups(content, items, all, level);
+        let number = self.add_node(level);
+        let mut below = Self::in_parallel(content, items, &groups[..count], level);
         for (j, group) in groups[..count].iter().enumerate() {
-            let child = if group.len() <= LARGEST_LEAF {
-                items[group.start..group.end].sort_unstable_by_key(Item::id);
-                Child::leaf(first + group.start, group.len())
-            } else if let Some(part) = below[j].take() {
-                Child(self.append(part))
-            } else {
-                Child(self.add(items, first, *group, level + 1))
+            let child = match below[j].take() {
+                Some(part) => Child(self.append(part)),
+                None => self.add_leaf(content, items, group),
             };
-            let node = &mut self.nodes[number];
-            node.child[j] = child;
-            let (lo, hi) = (group.bounds.lo.to_array(), group.bounds.hi.to_array());
-            for (i, [least, largest]) in node.planes.iter_mut().enumerate() {
-                (least[j], largest[j]) = (lo[i], hi[i]);
-            }
+            self.nodes[number].set(j, child, group);
         }
         number as u32
     }
 
+    /// Adds the node for a cut that is no leaf, or is all, and what is below.
+    fn add_cuts(&mut self, content: &C, items: &[Item], cuts: &Cuts, cut: usize, level: usize) -> u32 {
+        let number = self.add_node(level);
+        let (children, count) = cuts.children(cut);
+        for (j, &child) in children[..count].iter().enumerate() {
+            let group = cuts.group(child);
+            let child = if group.fits {
+                self.add_leaf(content, items, group)
+            } else {
+                Child(self.add_cuts(content, items, cuts, child, level + 1))
+            };
+            self.nodes[number].set(j, child, group);
+        }
+        number as u32
+    }
+
+    fn add_node(&mut self, level: usize) -> usize {
+        self.levels = self.levels.max(level);
+        self.nodes.push(Node {
+            planes: [[[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]]; 3],
+            child: [Child::default(); WIDTH],
+        });
+        self.nodes.len() - 1
+    }
+
+    fn add_leaf(&mut self, content: &C, items: &[Item], group: &Group) -> Child {
+        let mut ids: SmallVec<[u32; 16]> = items[group.start..group.end].iter().map(Item::id).collect();
+        ids.sort_unstable();
+        content.store(&ids, &mut self.units)
+    }
+
     /// The parts of the groups that get nodes, each on whatever core is free; the same ones as one after the other.
-    fn in_parallel(items: &mut [Item], first: usize, groups: &[Group], level: usize) -> [Option<Self>; WIDTH] {
+    fn in_parallel(content: &C, items: &mut [Item], groups: &[Group], level: usize) -> [Option<Self>; WIDTH] {
         let mut order: Vec<usize> = (0..groups.len()).collect();
         order.sort_unstable_by_key(|&j| groups[j].start);
         let mut tasks = Vec::with_capacity(groups.len());
@@ -194,8 +231,8 @@ impl Part {
             rest = others;
         }
         let one = |(j, own): (usize, &mut [Item])| {
-            let all = Group { start: 0, end: own.len(), bounds: groups[j].bounds };
-            (own.len() > LARGEST_LEAF).then(|| (j, Self::of(own, first + groups[j].start, all, level + 1)))
+            let all = Group { start: 0, end: own.len(), ..groups[j] };
+            (!all.fits).then(|| (j, Self::of(content, own, all, level + 1)))
         };
         let parts: Vec<_> = tasks.into_par_iter().filter_map(one).collect();
         let mut by_group = std::array::from_fn(|_| None);
@@ -203,41 +240,46 @@ impl Part {
         by_group
     }
 
-    /// Takes over the nodes of `part`; returns the number of its root.
+    /// Takes over the nodes and leaves of `part`; returns the number of its root.
     fn append(&mut self, part: Self) -> u32 {
-        let root = self.nodes.len() as u32;
+        let (root, units) = (self.nodes.len() as u32, self.units.len() as u32);
         self.levels = self.levels.max(part.levels);
         self.nodes.extend(part.nodes.into_iter().map(|mut node| {
-            node.child.iter_mut().for_each(|child| *child = child.after(root));
+            node.child.iter_mut().for_each(|child| *child = child.after(root, units));
             node
         }));
+        self.units.extend(part.units);
         root
     }
 }
 
 /// Cuts `all` into up to eight groups, the one most likely to be met first.
-fn groups(items: &mut [Item], all: Group, level: usize) -> ([Group; WIDTH], usize) {
+fn groups<C: Content>(content: &C, items: &mut [Item], all: Group, level: usize) -> ([Group; WIDTH], usize) {
     let mut groups = [all; WIDTH];
     let mut count = 1;
     while count < WIDTH {
         let by_count = level > HEURISTIC_LEVELS;
         let weight = |g: &Group| if by_count { g.len() as f32 } else { g.bounds.area() };
         let Some((chosen, _)) = (0..count)
-            .filter(|&k| groups[k].len() > LEAF)
+            .filter(|&k| !groups[k].fits && groups[k].len() > 1)
             .map(|k| (k, weight(&groups[k])))
             .max_by(|(k, a), (l, b)| a.total_cmp(b).then(l.cmp(k)))
         else {
             break;
         };
-        let Group { start, end, bounds } = groups[chosen];
-        let own = &mut items[start..end];
-        let cut = if by_count { None } else { best_cut(own, &bounds) };
-        let middle = start + if let Some(cut) = cut { cut.divide(own) } else { halve(own) };
-        groups[chosen] = Group::of(items, start, middle);
-        groups[count] = Group::of(items, middle, end);
+        [groups[chosen], groups[count]] = cut(content, items, &groups[chosen], by_count);
         count += 1;
     }
     (groups, count)
+}
+
+/// Cuts a group in two, by the heuristic or by count.
+pub(super) fn cut<C: Content>(content: &C, items: &mut [Item], group: &Group, by_count: bool) -> [Group; 2] {
+    let &Group { start, end, bounds, .. } = group;
+    let own = &mut items[start..end];
+    let cut = if by_count { None } else { best_cut(own, &bounds, C::AT_ONCE) };
+    let middle = start + if let Some(cut) = cut { cut.divide(own) } else { halve(own) };
+    [Group::of(content, items, start, middle), Group::of(content, items, middle, end)]
 }
 
 /// How the axes are cut into bins.
@@ -279,8 +321,9 @@ impl Cut {
     }
 }
 
-/// The cut with the least sum of measure times count; `None` if all items are at one place.
-fn best_cut(items: &[Item], bounds: &Box32) -> Option<Cut> {
+/// The cut with the least sum of measure times looks, of which each is at up to `at_once` items; `None` if all items are at one place.
+fn best_cut(items: &[Item], bounds: &Box32, at_once: usize) -> Option<Cut> {
+    let looks = |count: usize| count.div_ceil(at_once) as f32;
     let has_area = bounds.area() > 0.0;
     let measure = |b: &Box32| if has_area { b.area() } else { b.girth() };
     let places = items.iter().fold(Box32::EMPTY, |mut b, item| {
@@ -311,13 +354,13 @@ fn best_cut(items: &[Item], bounds: &Box32) -> Option<Cut> {
         for k in (1..count).rev() {
             sum.0.add(&bins[k].0);
             sum.1 += bins[k].1;
-            right[k] = measure(&sum.0) * sum.1 as f32;
+            right[k] = measure(&sum.0) * looks(sum.1);
         }
         let mut sum = (Box32::EMPTY, 0);
         for first_right in 1..count {
             sum.0.add(&bins[first_right - 1].0);
             sum.1 += bins[first_right - 1].1;
-            let cost = measure(&sum.0) * sum.1 as f32 + right[first_right];
+            let cost = measure(&sum.0) * looks(sum.1) + right[first_right];
             if (1..items.len()).contains(&sum.1) && best.as_ref().is_none_or(|(least, _)| cost < *least) {
                 best = Some((cost, Cut { binning, axis, first_right }));
             }

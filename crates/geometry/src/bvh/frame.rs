@@ -1,9 +1,8 @@
 //! The tree's own coordinates, and queries in them with room for every rounding.
 
-use super::{FatSegment, WIDTH};
+use super::FatSegment;
 use crate::bounds::{Aabb, largest};
-use crate::rounding::{UNIT_ROUNDOFF, gamma, segment_bound, segment_bound_f32};
-use wide::f32x8;
+use crate::rounding::{UNIT_ROUNDOFF, UNIT_ROUNDOFF_F32, gamma, segment_bound, segment_bound_f32};
 
 /// A margin beyond this is so much larger than the tree, which has a half extent of 1, that no box can be told apart.
 const HOPELESS: f64 = 1048576.0;
@@ -29,10 +28,10 @@ pub(super) struct LocalSegment {
     end: f64,
     /// For each axis: whether the planes with the lower coordinates are met first, and the points from which the near and the far one are
     /// measured.
-    forward: [bool; 3],
-    near_from: [f32; 3],
-    far_from: [f32; 3],
-    inverse: [f32; 3],
+    pub(super) forward: [bool; 3],
+    pub(super) near_from: [f32; 3],
+    pub(super) far_from: [f32; 3],
+    pub(super) inverse: [f32; 3],
 }
 
 impl Frame {
@@ -65,23 +64,42 @@ impl Frame {
     }
 
     /// The query, or `None` if it is certain to miss everything.
+    #[inline]
     pub(super) fn segment(&self, query: &FatSegment, bounds: &Aabb) -> Option<LocalSegment> {
         let FatSegment { from, to, radius } = query;
-        let all = || LocalSegment::new(0.0, 1.0, [0.0; 3], [0.0; 3], NEAR);
-        // Zero, unless one of them is not finite.
-        let zero = (0.0 * from.x + 0.0 * from.y + 0.0 * from.z) + (0.0 * to.x + 0.0 * to.y + 0.0 * to.z) + 0.0 * radius;
-        if zero != 0.0 || zero.is_nan() {
-            return (!bounds.is_empty()).then(all);
-        }
         let (a, b) = (self.local(from), self.local(to));
         let reach = largest_of(&a, &b);
-        let radius = largest(*radius, 0.0) * self.scale + segment_bound(reach);
+        // Zero, unless one of them is not finite.
+        let zero = (0.0 * from.x + 0.0 * from.y + 0.0 * from.z) + (0.0 * to.x + 0.0 * to.y + 0.0 * to.z) + 0.0 * radius;
+        let wide = largest(*radius, 0.0) * self.scale + segment_bound(reach);
+        // Not finite is not near.
+        let is_near = (reach <= NEAR) & (wide <= HOPELESS) & (zero == 0.0);
+        let part = if is_near {
+            Part { start: 0.0, end: 1.0, a, b, radius: wide }
+        } else {
+            self.far_segment(a, b, reach, wide, zero == 0.0, bounds)?
+        };
+        Some(LocalSegment::new(&part))
+    }
+
+    /// The part of a query that is near the tree, of one of which not all is.
+    #[cold]
+    fn far_segment(
+        &self,
+        a: [f64; 3],
+        b: [f64; 3],
+        reach: f64,
+        radius: f64,
+        is_finite: bool,
+        bounds: &Aabb,
+    ) -> Option<Part> {
+        let all = Part { start: 0.0, end: 1.0, a: [0.0; 3], b: [0.0; 3], radius: NEAR };
+        if !is_finite {
+            return (!bounds.is_empty()).then_some(all);
+        }
         // Also true where `reach` or the radius is no longer finite.
         if !(radius <= HOPELESS && reach <= HOPELESS / UNIT_ROUNDOFF) {
-            return Some(all());
-        }
-        if reach <= NEAR {
-            return Some(LocalSegment::new(0.0, 1.0, a, b, radius));
+            return Some(all);
         }
         // Boxes of the tree lie within NEAR at every scale.
         let limit = NEAR + radius;
@@ -92,8 +110,17 @@ impl Frame {
         let d = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
         let (s0, s1) = clip(&a, &d, (1.0 + radius) * (1.0 + gamma(2)))?;
         let at = |s: f64| [0, 1, 2].map(|i| a[i] + s * d[i]);
-        Some(LocalSegment::new(s0, s1, at(s0), at(s1), radius))
+        Some(Part { start: s0, end: s1, a: at(s0), b: at(s1), radius })
     }
+}
+
+/// What is looked at of a query: from `a` at s = `start` to `b` at s = `end`.
+struct Part {
+    start: f64,
+    end: f64,
+    a: [f64; 3],
+    b: [f64; 3],
+    radius: f64,
 }
 
 /// The largest |coordinate| of two points.
@@ -133,10 +160,9 @@ fn clip(a: &[f64; 3], d: &[f64; 3], bound: f64) -> Option<(f64, f64)> {
 }
 
 impl LocalSegment {
-    /// From `a` at s = `start` to `b` at s = `end`.
     #[inline]
-    fn new(start: f64, end: f64, a: [f64; 3], b: [f64; 3], radius: f64) -> Self {
-        let radius = round_up(radius + segment_bound_f32(largest_of(&a, &b), radius));
+    fn new(&Part { start, end, ref a, ref b, radius }: &Part) -> Self {
+        let radius = above(radius + segment_bound_f32(largest_of(a, b), radius));
         let mut local =
             Self { start, end, forward: [true; 3], near_from: [0.0; 3], far_from: [0.0; 3], inverse: [0.0; 3] };
         for i in 0..3 {
@@ -153,21 +179,6 @@ impl LocalSegment {
         local
     }
 
-    /// For each child a lower bound of where it is entered, in [0, 1], and a bit for each that is met up to `limit`.
-    #[inline(always)] // as a function of its own it would have the narrow registers
-    pub(super) fn entries(&self, planes: &[[[f32; WIDTH]; 2]; 3], limit: f32) -> ([f32; WIDTH], u32) {
-        let (mut entry, mut exit) = (f32x8::splat(0.0), f32x8::splat(limit));
-        for (i, sides) in planes.iter().enumerate() {
-            let forward = usize::from(self.forward[i]);
-            let (near, far) = (f32x8::new(sides[1 - forward]), f32x8::new(sides[forward]));
-            let inverse = f32x8::splat(self.inverse[i]);
-            // There are no NaN, which `max` and `min` would look for.
-            entry = entry.fast_max((near - f32x8::splat(self.near_from[i])) * inverse);
-            exit = exit.fast_min((far - f32x8::splat(self.far_from[i])) * inverse);
-        }
-        (entry.to_array(), entry.simd_le(exit).to_bitmask())
-    }
-
     /// The caller's limit of s as one of this part, rounded up.
     pub(super) fn local_limit(&self, s: f64) -> f32 {
         if s >= self.end || s.is_nan() {
@@ -177,8 +188,14 @@ impl LocalSegment {
             return -1.0;
         }
         // start <= s < end, so that the length is not 0; three roundings.
-        round_up((s - self.start) / (self.end - self.start) * (1.0 + gamma(4)))
+        above((s - self.start) / (self.end - self.start) * (1.0 + gamma(4)))
     }
+}
+
+/// An f32 above `v`, which is not below 0, by three roundings at most: in two steps that do not depend on `v`.
+#[inline]
+fn above(v: f64) -> f32 {
+    v as f32 * (1.0 + 2.0 * UNIT_ROUNDOFF_F32 as f32) + f32::MIN_POSITIVE
 }
 
 /// The largest f32 that is not above `v`.
@@ -246,7 +263,7 @@ mod tests {
 
     #[test]
     fn a_limit_in_the_part_is_the_caller_s_and_not_below_it() {
-        let part = LocalSegment::new(0.25, 0.75, [0.0; 3], [0.5; 3], 0.0);
+        let part = LocalSegment::new(&Part { start: 0.25, end: 0.75, a: [0.0; 3], b: [0.5; 3], radius: 0.0 });
         for (s, limit) in [(0.375, 0.25f32), (0.5, 0.5), (0.625, 0.75)] {
             assert!((limit.next_up()..=limit.next_up().next_up()).contains(&part.local_limit(s)), "{s}");
         }

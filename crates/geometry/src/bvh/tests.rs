@@ -110,17 +110,16 @@ proptest! {
     fn wider_registers_change_nothing(boxes in boxes(), a in lattice(), b in lattice(), r in 0..9i32, until in 0.0..1.0f64) {
         let tree = Bvh::build(&boxes);
         let Some(local) = tree.frame.segment(&FatSegment { from: a, to: b, radius: f64::from(r) }, &tree.bounds) else { return Ok(()) };
-        let run = |plainly: bool| {
+        let run = |narrow: bool| {
             let (mut stack, mut met) = (vec![Pending::default(); tree.stack], Vec::new());
-            let mut hit = |item| {
-                met.push(item);
+            let hit = |seen: Seen<'_>| {
+                met.push(seen.item);
                 until + 1.0 / met.len() as f64
             };
-            let visited = if plainly {
-                walk_plainly(&tree.nodes, &tree.items, &local, &mut stack, &mut hit)
-            } else {
-                walk(&tree.nodes, &tree.items, &local, &mut stack, &mut hit)
-            };
+            let Leaves::Boxes(items) = &tree.leaves else { return Default::default() };
+            let mut leaves = ShowBoxes { items, hit };
+            let walk = if narrow { walk_narrow } else { walk };
+            let visited = walk(&tree.nodes, &local, &mut stack, &mut leaves);
             (met, visited)
         };
         prop_assert_eq!(run(true), run(false));

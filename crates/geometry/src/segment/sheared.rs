@@ -1,7 +1,8 @@
 //! A cheap certificate that the line of a segment passes a triangle, or passes through it, for many triangles.
 
-use crate::bounds::{amax, largest, least};
+use crate::bounds::{largest, least};
 use crate::rounding::sheared_bound;
+use crate::shear::Shear;
 use nalgebra::Point3;
 
 /// A segment, and the shear along its longest axis that brings its line to one point of the plane across: there, a side of a triangle is passed
@@ -9,17 +10,7 @@ use nalgebra::Point3;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Sheared {
     ends: [Point3<f64>; 2],
-    /// The axis along which it is longest.
-    axis: Axis,
-    /// By how much it moves along the next axis and the one after for each unit along that; NaN where it has no direction.
-    slopes: [f64; 2],
-}
-
-#[derive(Debug, Clone, Copy)]
-enum Axis {
-    X,
-    Y,
-    Z,
+    shear: Shear,
 }
 
 /// Where the line of a segment passes a triangle.
@@ -36,21 +27,12 @@ pub(super) enum Passage {
 impl Sheared {
     /// The segment from `p0` to `p1`.
     pub(crate) fn new(p0: &Point3<f64>, p1: &Point3<f64>) -> Self {
-        let d = p1 - p0;
-        let most = amax(&d);
-        // A difference beyond the range of f64 has no slopes that are right to rounding.
-        let slopes = |next: f64, last: f64, long: f64| {
-            let long = if most.is_finite() { long } else { f64::NAN };
-            [next / long, last / long]
-        };
-        let (axis, slopes) = if d.z.abs() == most {
-            (Axis::Z, slopes(d.x, d.y, d.z))
-        } else if d.y.abs() == most {
-            (Axis::Y, slopes(d.z, d.x, d.y))
-        } else {
-            (Axis::X, slopes(d.y, d.z, d.x))
-        };
-        Self { ends: [*p0, *p1], axis, slopes }
+        Self { ends: [*p0, *p1], shear: Shear::new(p0, p1) }
+    }
+
+    /// The shear.
+    pub(crate) fn shear(&self) -> &Shear {
+        &self.shear
     }
 
     /// From where to where it runs.
@@ -61,27 +43,23 @@ impl Sheared {
     /// Where its line passes a triangle.
     #[inline]
     pub(super) fn passage(&self, corners: [&Point3<f64>; 3]) -> Passage {
-        match self.axis {
-            Axis::X => self.passage_along::<0>(corners),
-            Axis::Y => self.passage_along::<1>(corners),
-            Axis::Z => self.passage_along::<2>(corners),
-        }
-    }
-
-    #[inline(always)] // three times, each with the places of its coordinates in the instructions
-    fn passage_along<const AXIS: usize>(&self, corners: [&Point3<f64>; 3]) -> Passage {
-        let (next, last) = ((AXIS + 1) % 3, (AXIS + 2) % 3);
-        let (p, [slope, other]) = (&self.ends[0], self.slopes);
-        let sheared = |v: &Point3<f64>| {
-            let along = v[AXIS] - p[AXIS];
-            [v[next] - p[next] - slope * along, v[last] - p[last] - other * along, along]
+        let [a, b, c] = match self.shear.axis {
+            0 => corners.map(|v| self.shear.of::<0>(v)),
+            1 => corners.map(|v| self.shear.of::<1>(v)),
+            _ => corners.map(|v| self.shear.of::<2>(v)),
         };
-        let [a, b, c] = corners;
-        let (a, b, c) = (sheared(a), sheared(b), sheared(c));
         let most = |i: usize| largest(largest(a[i].abs(), b[i].abs()), c[i].abs());
         let bound = sheared_bound(largest(most(0), most(1)), most(2));
-        let turn = |a: &[f64; 3], b: &[f64; 3]| a[0] * b[1] - a[1] * b[0];
-        let (ab, bc, ca) = (turn(&a, &b), turn(&b, &c), turn(&c, &a));
+        self.passage_of(&[a, b, c].map(|[next, last, _]| [next, last]), bound)
+    }
+
+    /// Where its line passes a triangle, given how its corners are sheared and a [`sheared_bound`] for them.
+    #[inline]
+    pub(super) fn passage_of(&self, [a, b, c]: &[[f64; 2]; 3], bound: f64) -> Passage {
+        // NaN without a direction.
+        let bound = bound + 0.0 * self.shear.slopes[0];
+        let turn = |a: &[f64; 2], b: &[f64; 2]| a[0] * b[1] - a[1] * b[0];
+        let (ab, bc, ca) = (turn(a, b), turn(b, c), turn(c, a));
         // All are NaN where there is no direction, and no comparison is true; where one alone is, it overflowed, and so did the bound.
         let (least, most) = (least(least(ab, bc), ca), largest(largest(ab, bc), ca));
         if (least < -bound) & (most > bound) {

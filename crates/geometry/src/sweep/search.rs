@@ -9,6 +9,7 @@ use crate::contact::{Contact, Hold, MovingBall, contact_from};
 use crate::mesh::Mesh;
 use crate::rounding::{contact_doubt, hold_bound, position_bound, screen_bound};
 use crate::screen::Stretch;
+use crate::shear::Shear;
 use nalgebra::{Point3, Vector3};
 use smallvec::SmallVec;
 
@@ -61,7 +62,7 @@ impl Mesh {
             let known = around.faces(self, &start, ball.radius, length, within + doubt, &mut search.work);
             if let Some(faces) = known {
                 search.begin(0.0, last, within, doubt);
-                faces.iter().for_each(|&face| search.consider(face));
+                faces.iter().for_each(|&face| search.consider(face, self.triangle_from(face, &start)));
                 search.conclude();
                 (around.left, *work) = (search.left, search.work);
                 return search.best;
@@ -99,8 +100,10 @@ impl Mesh {
                 continue;
             }
             search.begin(from, end, within, screen_bound(size + reach));
-            let nodes = self.bvh().visit(&FatSegment { from: a, to: b, radius }, |face| {
-                search.consider(face);
+            let nodes = self.bvh().look_along(&FatSegment { from: a, to: b, radius }, &Shear::new(&a, &b), |seen| {
+                let face = seen.item;
+                let corners = seen.corners.map(|known| known.points().map(|corner| corner - start));
+                search.consider(face, corners.unwrap_or_else(|| self.triangle_from(face, &start)));
                 search.part_of_interest()
             });
             search.work.nodes += nodes;
@@ -177,14 +180,13 @@ impl<F: Fn(u32) -> f64> Search<'_, F> {
         (self.limit - self.from) / (self.end - self.from)
     }
 
-    /// Looks at a face that may be met in the piece.
-    fn consider(&mut self, face: u32) {
+    /// Looks at a face with these `corners` that may be met in the piece.
+    fn consider(&mut self, face: u32, corners: [Vector3<f64>; 3]) {
         if self.best.is_some_and(|found| found.face == face) {
             self.left.faces.push((face, f64::INFINITY));
             return;
         }
         self.work.triangles += 1;
-        let corners = self.mesh.triangle_from(face, &self.start);
         let normal = self.mesh.plain_normal(face);
         if self.stretch.is_off_face(&corners, normal) {
             return;
