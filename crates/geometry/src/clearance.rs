@@ -124,6 +124,7 @@ impl Clearance {
 }
 
 /// The first f >= 0 where c + b f + a f^2 is <= 0 and falling.
+#[inline]
 fn quadratic_entry(c: f64, b: f64, a: f64) -> Entry {
     if c <= 0.0 {
         if b < 0.0 {
