@@ -1,5 +1,7 @@
 //! Times the scenes: `time [NAME]`, medians of several runs in one process.
 
+use carom_benches::cases::ball_and_triangle;
+use carom_benches::clock::median;
 use carom_benches::scenes::{self, Result};
 use carom_benches::terrain::SQUARES;
 use carom_dynamics::body::Ball;
@@ -9,6 +11,9 @@ use carom_dynamics::plan::Plan;
 use carom_dynamics::run::run_balls;
 use carom_dynamics::scene::Scene;
 use carom_dynamics::simulate::simulate;
+use carom_geometry::contact::{Contact, MovingBall, first_contact};
+use carom_geometry::triangle::Feature;
+use std::hint::black_box;
 use std::ops::ControlFlow;
 use std::time::Instant;
 
@@ -27,8 +32,36 @@ fn main() -> Result<()> {
             println!("{count} faces in {seconds:.2} s, {bytes:.1} bytes a face beside the vertices");
             Ok(())
         }
+        "triangle" => {
+            triangle(runs);
+            Ok(())
+        }
         "room" => report("room", &scenes::balls_in_room(balls, 10.0)?, runs),
         _ => report("b", &scenes::balls_on_terrain(SQUARES, balls, 0.7, 2.0)?, runs),
+    }
+}
+
+/// A ball against a triangle: deciles over the cases with exact answers, of the queries that end on each feature.
+fn triangle(runs: usize) {
+    const TIMES: usize = 64;
+    let mut all: Vec<(String, f64)> = Vec::new();
+    for case in ball_and_triangle() {
+        let ball = MovingBall { path: &case.path, radius: case.radius, holds: &[] };
+        let query = || first_contact(&ball, black_box(&case.triangle), 0.0, 1.0, &mut 0);
+        let time = median(runs, || (0..TIMES).for_each(|_| _ = black_box(query())));
+        let kind = match query() {
+            Contact::Miss => "miss",
+            Contact::At { feature: Feature::Face, .. } => "face",
+            Contact::At { feature: Feature::Edge(_), .. } => "edge",
+            Contact::At { feature: Feature::Vertex(_), .. } => "vertex",
+        };
+        all.push((kind.into(), 1e9 * time / TIMES as f64));
+    }
+    all.sort_by(|a, b| a.1.total_cmp(&b.1));
+    for kind in ["", "miss", "face", "edge", "vertex"] {
+        let of: Vec<f64> = all.iter().filter(|(k, _)| kind.is_empty() || k == kind).map(|(_, t)| *t).collect();
+        let deciles: Vec<String> = (1..10).map(|k| format!("{:.0}", of[(of.len() - 1) * k / 10])).collect();
+        println!("triangle {kind}: {} queries, deciles {} ns", of.len(), deciles.join(", "));
     }
 }
 

@@ -2,7 +2,7 @@
 
 mod returning;
 
-pub use returning::{Return, Returns};
+pub use returning::Returns;
 
 use crate::body::State;
 use crate::contacts::{Contact, Contacts, MAX_CONTACTS, PerContact};
@@ -12,7 +12,7 @@ use crate::plan::Plan;
 use crate::tolerance::{merge_angle_squared, rate_rounding, touch_breadth, touch_distance};
 use carom_geometry::bounds::amax;
 use carom_geometry::clearance::Entry;
-use carom_geometry::contact::{Hold, MovingBall};
+use carom_geometry::contact::MovingBall;
 use carom_geometry::mesh::{Fold, Mesh};
 use carom_geometry::order::by_size;
 use carom_geometry::plane::Side;
@@ -148,7 +148,7 @@ impl<'a> Obstacles<'a> {
             let surface = facing.surface;
             let known = contacts.iter().position(|c| c.surface == surface);
             let entry = match known {
-                Some(i) => returns[i].entry,
+                Some(i) => returns[i],
                 None => {
                     counters.clearances += 1;
                     let gap = facing.clearance(&step.path.start(), self.radius);
@@ -161,22 +161,23 @@ impl<'a> Obstacles<'a> {
                 earliest = Some(Hit { f, surface, face: None, rate: Some(rate) });
             }
         }
+        if self.plan.meshes.is_empty() {
+            return earliest;
+        }
+        let mut holds = self.holds(step, contacts, returns);
         for ((surface, mesh), around) in self.plan.meshes.iter().zip(&mut self.around) {
-            let mut holds = PerContact::<Hold>::new();
-            for (contact, back) in contacts.iter().zip(returns) {
-                let face = back.hold.face.filter(|_| contact.surface == *surface);
-                holds.push(Hold { face, ..back.hold });
+            for (contact, hold) in contacts.iter().zip(&mut holds) {
+                hold.face = contact.site.filter(|_| contact.surface == *surface).map(|site| site.face());
             }
             let ball = MovingBall { path: &step.path, radius: self.mesh_radius, holds: &holds };
             let to = earliest.map_or(step.to, |hit| hit.f);
             let mut work = Work::default();
             let asked = Cell::new(0);
-            let free_until = |face: u32| {
-                let on_it = contacts.iter().zip(returns).filter(|(contact, _)| contact.surface == *surface);
-                let departures =
-                    on_it.map(|(contact, back)| Departure { step, contact, back, mesh, radius: ball.radius });
-                departures.map(|departure| departure.free_until(face, &asked)).fold(0.0, f64::max)
-            };
+            let on_it = contacts.iter().zip(returns).filter(|(contact, _)| contact.surface == *surface);
+            let departures: PerContact<Departure> =
+                on_it.map(|(contact, back)| Departure::new(step, contact, back, mesh, ball.radius)).collect();
+            let free_until =
+                |face: u32| departures.iter().map(|departure| departure.free_until(face, &asked)).fold(0.0, f64::max);
             let found = mesh.first_contact_around(&ball, to, free_until, around, &mut work);
             counters.add(&work);
             counters.clearances += asked.get();

@@ -68,6 +68,13 @@ impl Clearance {
         Self { c: coefficients }
     }
 
+    /// What is left of it beyond `margin`.
+    #[inline]
+    pub(crate) fn beyond(&self, margin: f64) -> Self {
+        let [c0, c1, c2, c3, c4] = self.c;
+        Self { c: [c0 - margin, c1, c2, c3, c4] }
+    }
+
     /// c(f).
     #[inline]
     pub fn at(&self, f: f64) -> f64 {
@@ -117,6 +124,7 @@ impl Clearance {
 }
 
 /// The first f >= 0 where c + b f + a f^2 is <= 0 and falling.
+#[inline]
 fn quadratic_entry(c: f64, b: f64, a: f64) -> Entry {
     if c <= 0.0 {
         if b < 0.0 {

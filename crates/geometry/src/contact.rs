@@ -137,14 +137,18 @@ pub(crate) fn contact_from(ball: &MovingBall, asked: &Asked, from: f64, to: f64,
     }
     let query = Query::new(ball, asked, to);
     let (path, mut f) = (ball.path, from);
-    let bound_at = |f: f64| query.bound_at(f);
-    if let Some((gap, normal)) =
-        face_plane(asked, ball, f).filter(|(gap, n)| path.clearance(*gap, n).at(f) > 2.0 * bound_at(f))
-    {
-        *rounds += 1;
-        match query.meets(gap, &normal, f).0 {
-            Entry::Never => return Contact::Miss,
-            Entry::At { f: next, .. } => f = next,
+    if let Some((gap, normal)) = face_plane(asked, ball, f) {
+        let plane = path.clearance(gap, &normal);
+        if plane.at(f) > 2.0 * query.bound_at(f) {
+            *rounds += 1;
+            match query.meets(&plane, f).0 {
+                Entry::Never => return Contact::Miss,
+                Entry::At { f: next, .. } => f = next,
+            }
+            if f <= to && plane.rate(f) < 0.0 && asked.is_under(&path.displacement(f)) {
+                // Met over its inside, the face is what is touched.
+                return Contact::At { feature: Feature::Face, f: plane.first_entry(f, query.end).f().unwrap_or(f) };
+            }
         }
     }
     let mut looked = false;
@@ -153,30 +157,28 @@ pub(crate) fn contact_from(ball: &MovingBall, asked: &Asked, from: f64, to: f64,
             return Contact::Miss;
         }
         *rounds += 1;
-        let bound = bound_at(f);
-        let (support, plane) = Support::near(ball, asked, f, 2.0 * bound);
+        let bound = query.bound_at(f);
+        let (feature, plane) = Support::near(ball, asked, f, 2.0 * bound);
         let (height, falling) = (plane.at(f), plane.rate(f) < 0.0);
         if height <= 2.0 * bound && falling {
-            return Contact::At { feature: support.feature, f: query.polish((support, plane), f, bound, rounds) };
+            return Contact::At { feature, f: query.polish((feature, plane, f), f, bound, rounds) };
         }
-        if !std::mem::replace(&mut looked, true) {
-            match query.look_ahead(support.feature, f, to, rounds) {
-                Ahead::Ends(contact) => return contact,
-                Ahead::FreeUntil(next) if next > f => {
-                    f = next;
-                    continue;
-                }
-                Ahead::FreeUntil(_) => {}
-            }
-        }
-        let (entry, bound) = query.meets(support.gap, &support.normal, f);
+        let (entry, bound) = query.meets(&plane, f);
         let Entry::At { f: next, .. } = entry else {
             return Contact::Miss;
         };
         if (height <= 2.0 * bound && falling) || next - f <= 2.0 * UNIT_ROUNDOFF * f {
-            return Contact::At { feature: support.feature, f: query.polish((support, plane), f, bound, rounds) };
+            return Contact::At { feature, f: query.polish((feature, plane, f), f, bound, rounds) };
         }
-        f = next;
+        let ahead = match looked {
+            false if next <= to => query.look_ahead(feature, f, next, to, rounds),
+            _ => Ahead::FreeUntil(next),
+        };
+        looked = true;
+        match ahead {
+            Ahead::Ends(contact) => return contact,
+            Ahead::FreeUntil(next) => f = next,
+        }
     }
     if f > to {
         return Contact::Miss;
@@ -208,14 +210,13 @@ impl<'a> Query<'a> {
     /// Where after `f` the ball meets a plane, and the bound that was taken off: never late, since the plane is moved towards the ball by the bound that
     /// holds where the path meets it.
     #[inline]
-    fn meets(&self, gap: f64, normal: &Vector3<f64>, f: f64) -> (Entry, f64) {
+    fn meets(&self, plane: &Clearance, f: f64) -> (Entry, f64) {
         let bound = 2.0 * self.bound_at(f);
-        let entry_by = |bound: f64| self.ball.path.clearance(gap - bound, normal).first_entry(f, self.end);
-        let entry = entry_by(bound);
+        let entry = plane.beyond(bound).first_entry(f, self.end);
         match entry {
             Entry::At { f: next, .. } if self.bound_at(next) > bound => {
                 let bound = self.bound_at(next);
-                (entry_by(bound), bound)
+                (plane.beyond(bound).first_entry(f, self.end), bound)
             }
             _ => (entry, bound),
         }
@@ -223,23 +224,31 @@ impl<'a> Query<'a> {
 
     /// From `f`, where the ball touches to within the bound, to where it touches: support planes again, now where they are. The triangle
     /// is behind them all the same, so this ends at the contact to the rounding of the planes: on a face at once, at an edge or a vertex in
-    /// a step or two of Newton's method.
-    fn polish(&self, (support, plane): (Support, Clearance), f: f64, bound: f64, rounds: &mut u64) -> f64 {
-        let (mut f, mut feature, mut plane) = (f, support.feature, plane);
+    /// a step or two of Newton's method. The first is the `plane` that faces the ball at `seen`, of that `feature`.
+    fn polish(&self, (feature, plane, seen): (Feature, Clearance, f64), f: f64, bound: f64, rounds: &mut u64) -> f64 {
+        let (mut f, mut feature, mut plane, mut seen) = (f, feature, plane, seen);
         for _ in 0..MAX_POLISH {
             let Entry::At { f: next, .. } = plane.first_entry(f, self.end) else {
                 break;
             };
-            let arrived = next - f <= 2.0 * UNIT_ROUNDOFF * f || feature == Feature::Face;
+            let arrived =
+                next - f <= 2.0 * UNIT_ROUNDOFF * f || feature == Feature::Face || self.is_as_seen(seen, next);
             f = next;
             if arrived {
                 break;
             }
             *rounds += 1;
-            let (support, now) = Support::near(self.ball, self.asked, f, 2.0 * bound);
-            (feature, plane) = (support.feature, now);
+            seen = f;
+            (feature, plane) = Support::near(self.ball, self.asked, f, 2.0 * bound);
         }
         f
+    }
+
+    /// Whether a plane that faces the ball at `seen` is as near to an edge or a vertex at `f` as rounding tells: the ball, which is round, is off it there
+    /// by half the square of its way over its radius.
+    fn is_as_seen(&self, seen: f64, f: f64) -> bool {
+        let way = self.ball.path.displacement(f) - self.ball.path.displacement(seen);
+        (way / self.ball.radius).norm_squared() <= UNIT_ROUNDOFF
     }
 }
 
@@ -273,26 +282,23 @@ impl Support {
         Self { normal, gap, feature: closest.feature }
     }
 
-    /// The plane that faces the ball at `f`, and the path's clearance from it; where the ball touches the border of the triangle to within `bound`, the
+    /// What is closest to the ball at `f`, and the path's clearance from the plane that faces it there; where the ball touches the border of the triangle to within `bound`, the
     /// better of that and the face's own.
     ///
     /// For a ball that is small beside the triangle, the direction to the border is rounding: a plane that it turns towards the face has that in
     /// front, and tells nothing; one that it turns away closes in on a ball that rises from the face.
     #[inline]
-    fn near(ball: &MovingBall, asked: &Asked, f: f64, bound: f64) -> (Self, Clearance) {
-        let support = Self::at(ball, asked, f);
-        let plane = ball.path.clearance(support.gap, &support.normal);
-        if support.feature == Feature::Face {
-            return (support, plane);
-        }
+    fn near(ball: &MovingBall, asked: &Asked, f: f64, bound: f64) -> (Feature, Clearance) {
+        let Self { normal, gap, feature } = Self::at(ball, asked, f);
+        let plane = ball.path.clearance(gap, &normal);
         let height = plane.at(f);
-        if height > bound {
-            return (support, plane);
+        if feature == Feature::Face || height > bound {
+            return (feature, plane);
         }
-        let Some((gap, normal)) = face_plane(asked, ball, f) else { return (support, plane) };
+        let Some((gap, normal)) = face_plane(asked, ball, f) else { return (feature, plane) };
         let face = ball.path.clearance(gap, &normal);
         let better = face.at(f) >= -bound && (height < -bound || face.rate(f) >= 0.0);
-        if better { (Self { gap, normal, ..support }, face) } else { (support, plane) }
+        (feature, if better { face } else { plane })
     }
 }
 

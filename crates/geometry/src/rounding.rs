@@ -213,6 +213,14 @@ pub fn hold_bound(distance: f64) -> f64 {
     2.0 * NORMAL_BOUND * distance + contact_bound(distance)
 }
 
+/// Bound on the error of n.(p x q), n a normal within [`NORMAL_BOUND`] and p and q rounded differences of points with no |component| above `most`.
+///
+/// A component of p x q is at most 2 `most`^2 and off by 8 u `most`^2: 2 u and a rounding for each of its products, and that of their difference. Three of
+/// them give 24, the normal's own error 3 * 56 * 2 = 336, the sums and products with it less than 24 u `most`^2: together below 512.
+pub(crate) fn triple_product_bound(most: f64) -> f64 {
+    512.0 * UNIT_ROUNDOFF * (most * most)
+}
+
 /// How far the centre of a ball may lie outside the region of the place that it touches, by rounding: 8 [`position_bound`].
 ///
 /// What touches within the rounding of a position, 64 units of the extent, has been put there along a normal that was off by as much: twice that.
@@ -276,7 +284,7 @@ mod tests {
         let units = |bound: f64| bound / UNIT_ROUNDOFF;
         assert_eq!([position_bound(3.0), segment_bound(3.0), contact_bound(3.0)].map(units), [48.0, 24.0, 48.0]);
         assert_eq!([contact_doubt(3.0), hold_bound(2.0), point_radius(3.0)].map(units), [240.0, 256.0, 49152.0]);
-        assert_eq!(units(cone_bound(3.0)), 384.0);
+        assert_eq!([cone_bound(3.0), triple_product_bound(3.0)].map(units), [384.0, 4608.0]);
         let in_f32 = |reach, radius| segment_bound_f32(reach, radius) / UNIT_ROUNDOFF_F32;
         assert_eq!([in_f32(0.0, 0.0), in_f32(3.0, 0.0), in_f32(0.0, 3.0), in_f32(3.0, 5.0)], [2.0, 50.0, 8.0, 60.0]);
         // e = 14 u times the extent; (2 e, and e times diameter times perimeter over area) and 2 e over each height.

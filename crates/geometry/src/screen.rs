@@ -3,8 +3,9 @@
 //! Any plane with the triangle behind it will do, so the second may be found in a hurry: by plain arithmetic, and without a root. The two are
 //! enough for most triangles that a tree of boxes lets through.
 
-use crate::bounds::{largest, least};
+use crate::bounds::{amax, largest, least};
 use crate::path::Path;
+use crate::rounding::triple_product_bound;
 use nalgebra::Vector3;
 
 /// A stretch of a ball's path, seen from the start of the path.
@@ -38,13 +39,11 @@ impl Stretch {
     /// path, and the unit `normal`. A normal of zero tells nothing.
     #[inline]
     pub(crate) fn is_off_face(&self, corners: &[Vector3<f64>; 3], normal: &Vector3<f64>) -> bool {
-        let [a, b, c] = corners;
-        let heights = [normal.dot(a), normal.dot(b), normal.dot(c)];
+        let [a, b, c] = heights(corners, normal);
         let (from, to) = (normal.dot(&self.from), normal.dot(&self.to));
         let bend = normal.dot(&self.bend);
         // From its front and from its back.
-        let (highest, lowest) =
-            (largest(largest(heights[0], heights[1]), heights[2]), least(least(heights[0], heights[1]), heights[2]));
+        let (highest, lowest) = (largest(largest(a, b), c), least(least(a, b), c));
         let above = least(from, to) - highest - largest(bend, 0.0);
         let below = lowest - largest(from, to) + least(bend, 0.0);
         largest(above, below) - self.further > self.reach
@@ -72,7 +71,8 @@ impl Stretch {
         distance > 0.0 && distance * distance > reach * reach * across.norm_squared()
     }
 
-    /// Whether a ball of `radius` seems to meet the inside of the triangle, if it comes to its plane at all: a guess, for which its chord will do.
+    /// Whether a ball of `radius` seems to meet the inside of the triangle, if it comes to its plane at all: a guess, by its chord and from there
+    /// by a step of Newton's method.
     #[inline]
     pub(crate) fn leads_into(&self, corners: &[Vector3<f64>; 3], normal: &Vector3<f64>, radius: f64) -> bool {
         let [a, b, c] = corners;
@@ -80,14 +80,20 @@ impl Stretch {
         let (from, to) = (normal.dot(&self.from) - height, normal.dot(&self.to) - height);
         let side = if from < 0.0 { -1.0 } else { 1.0 };
         let (from, to) = (side * from - radius, side * to - radius);
+        // Below the chord by this where the stretch is bent most.
+        let bend = side * normal.dot(&self.bend);
+        let below = |part: f64| 4.0 * (part * (1.0 - part));
         let part = if from <= 0.0 {
             0.0
         } else if to < from {
-            least(from / (from - to), 1.0)
+            let part = least(from / (from - to), 1.0);
+            let (height, falls) =
+                (from + (to - from) * part - bend * below(part), from - to + bend * (4.0 - 8.0 * part));
+            if falls > 0.0 { largest(least(part + height / falls, 1.0), 0.0) } else { part }
         } else {
             1.0
         };
-        let foot = self.from + (self.to - self.from) * part;
+        let foot = self.from + (self.to - self.from) * part - self.bend * below(part);
         let turn = |p: &Vector3<f64>, q: &Vector3<f64>| (q - p).cross(&(foot - p)).dot(normal);
         let turns = [turn(a, b), turn(b, c), turn(c, a)];
         turns.iter().all(|t| *t >= 0.0) || turns.iter().all(|t| *t <= 0.0)
@@ -129,12 +135,26 @@ fn closest([a, b, c]: &[Vector3<f64>; 3], x: &Vector3<f64>) -> Vector3<f64> {
     a + ab * (of_b * share) + ac * (of_c * share)
 }
 
-/// Whether all `corners` are farther than `reach` from the plane through the origin across `normal`, on one side of it.
+/// The heights of the `corners` over the plane through the origin across `normal`.
 #[inline]
-pub(crate) fn is_off_plane(corners: &[Vector3<f64>; 3], normal: &Vector3<f64>, reach: f64) -> bool {
-    let [a, b, c] = corners;
-    let (a, b, c) = (normal.dot(a), normal.dot(b), normal.dot(c));
+pub(crate) fn heights([a, b, c]: &[Vector3<f64>; 3], normal: &Vector3<f64>) -> [f64; 3] {
+    [normal.dot(a), normal.dot(b), normal.dot(c)]
+}
+
+/// Whether corners with these `heights` over a plane are all farther than `reach` from it, on one side.
+#[inline]
+pub(crate) fn is_off_plane(&[a, b, c]: &[f64; 3], reach: f64) -> bool {
     least(least(a, b), c) > reach || largest(largest(a, b), c) < -reach
+}
+
+/// Whether the origin is surely over or under the inside of the triangle with the `corners` and the unit `normal`. A normal of zero tells nothing.
+#[inline]
+pub(crate) fn is_over(corners: &[Vector3<f64>; 3], normal: &Vector3<f64>) -> bool {
+    let [a, b, c] = corners;
+    let bound = triple_product_bound(largest(largest(amax(a), amax(b)), amax(c)));
+    let turn = |p: &Vector3<f64>, q: &Vector3<f64>| normal.dot(&p.cross(q));
+    let (ab, bc, ca) = (turn(a, b), turn(b, c), turn(c, a));
+    least(least(ab, bc), ca) > bound || largest(largest(ab, bc), ca) < -bound
 }
 
 #[cfg(test)]

@@ -13,17 +13,13 @@ use carom_geometry::site::{Bend, RegionBound};
 use nalgebra::{Point3, Vector3};
 use std::cell::Cell;
 
-/// When a contact that the ball has is entered again: clearance 0 at the start, changing with its exact rate.
-#[derive(Debug, Clone, Copy)]
-pub struct Return {
-    /// For the mesh queries.
-    pub(super) hold: Hold,
-    /// Where, and at what slope.
-    pub entry: Entry,
-}
+/// Where in one step each contact that the ball has is entered again, and at what slope: clearance 0 at the start, changing with its exact rate.
+pub type Returns = PerContact<Entry>;
 
-/// The returns of one step, one for each contact.
-pub type Returns = PerContact<Return>;
+/// The f of a return, infinite if there is none.
+fn until(back: &Entry) -> f64 {
+    back.f().unwrap_or(f64::INFINITY)
+}
 
 /// The clearance from a contact along the step: 0 now by definition, and its slope the contact's own rate (plus what a path that
 /// does not begin with the velocity adds).
@@ -93,26 +89,36 @@ pub(super) fn slides_over(step: &Step, bound: &RegionBound, from: f64, slack: f6
 
 /// A ball that leaves a contact with a mesh, and returns to it.
 pub(super) struct Departure<'a> {
-    pub step: &'a Step,
-    pub contact: &'a Contact,
-    pub back: &'a Return,
-    pub mesh: &'a Mesh,
-    pub radius: f64,
+    step: &'a Step,
+    contact: &'a Contact,
+    mesh: &'a Mesh,
+    radius: f64,
+    /// The f of its return to the plane of the contact.
+    until: f64,
+    bend: Bend,
+    /// [`leaves_until`], once it is known.
+    leaves: Cell<Option<f64>>,
 }
 
-impl Departure<'_> {
+impl<'a> Departure<'a> {
+    /// A ball of `radius` that leaves `contact` with `mesh` by `step`, to whose plane it is `back`.
+    pub(super) fn new(step: &'a Step, contact: &'a Contact, back: &Entry, mesh: &'a Mesh, radius: f64) -> Self {
+        let is_left = !contact.lasting && contact.rate >= 0.0;
+        let bend = contact.site.filter(|_| is_left).map_or(Bend::Flat, |site| mesh.bend(site));
+        Self { step, contact, mesh, radius, until: until(back), bend, leaves: Cell::new(None) }
+    }
+
     /// The f before which the ball does not touch `face` again: none of the faces at the contact before it is back at its plane; and if it leaves an edge
     /// or vertex, none before it comes back to that, or to where another part of the face is nearer. `clearances` counts what is asked for it.
     pub(super) fn free_until(&self, face: u32, clearances: &Cell<u64>) -> f64 {
-        let &Self { step, contact, mesh, .. } = self;
+        let &Self { step, contact, mesh, until, bend, .. } = self;
         let Some(site) = contact.site.filter(|site| mesh.is_at(face, *site)) else { return 0.0 };
-        let until = self.back.hold.until;
-        let bend = mesh.bend(site);
-        if contact.lasting || contact.rate < 0.0 || bend == Bend::Flat {
+        if bend == Bend::Flat {
             return until;
         }
-        let slope = leaving(step, contact).rate(0.0);
-        let mut free = leaves_until(step, bend, self.radius, slope);
+        let leaves = || leaves_until(step, bend, self.radius, leaving(step, contact).rate(0.0));
+        let mut free = self.leaves.get().unwrap_or_else(leaves);
+        self.leaves.set(Some(free));
         for bound in mesh.region(site).iter().filter(|bound| mesh.is_at(face, bound.next)) {
             clearances.set(clearances.get() + 1);
             if let Entry::At { f, .. } = leaves_region(step, bound) {
@@ -126,25 +132,27 @@ impl Departure<'_> {
 impl Obstacles<'_> {
     /// When the path of `step` returns to each of `contacts`; never to a lasting one, along which it moves.
     pub fn returns(&self, step: &Step, contacts: &[Contact], counters: &mut Counters) -> Returns {
-        let slack = touch_distance(amax(&step.path.start().coords).max(self.radius), 0.0);
         let mut returns = Returns::new();
         for contact in contacts {
-            let entry = if contact.lasting {
+            returns.push(if contact.lasting {
                 Entry::Never
             } else {
                 counters.clearances += 1;
                 leaving(step, contact).first_entry(0.0, step.to)
-            };
-            let hold = Hold {
-                normal: contact.normal,
-                point: self.anchor(contact),
-                slack,
-                until: entry.f().unwrap_or(f64::INFINITY),
-                face: contact.site.map(|site| site.face()),
-            };
-            returns.push(Return { hold, entry });
+            });
         }
         returns
+    }
+
+    /// `contacts`, to which `step` comes back by `returns`, as the search of a mesh needs them; `face` is left to that mesh.
+    pub(super) fn holds(&self, step: &Step, contacts: &[Contact], returns: &Returns) -> PerContact<Hold> {
+        let slack = touch_distance(amax(&step.path.start().coords).max(self.radius), 0.0);
+        let mut holds = PerContact::new();
+        for (contact, back) in contacts.iter().zip(returns) {
+            let (normal, point) = (contact.normal, self.anchor(contact));
+            holds.push(Hold { normal, point, slack, until: until(back), face: None });
+        }
+        holds
     }
 
     /// A point of what is touched.

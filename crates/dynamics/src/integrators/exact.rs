@@ -15,6 +15,7 @@ const SHORTER: f64 = 1.0 / (1u128 << 64) as f64;
 ///
 /// f = 1 stands for the next power of two of seconds, so that the path's terms v h and a h^2 / 2 are exact, and the same
 /// flight is the same bits however much time remains.
+#[inline]
 pub fn step(state: &State, a: Vector3<f64>, remaining: f64) -> Step {
     let mut h = next_power_of_two(remaining);
     // Not a (h h / 2): h^2 may be out of range where nothing accelerates.

@@ -105,6 +105,7 @@ impl Integrator {
 
 impl Step {
     /// Position and velocity at `f`.
+    #[inline]
     pub fn at(&self, f: f64) -> State {
         let [v0, v1, v2, v3, v4] = self.velocity;
         // The velocity has no terms beyond those of the path.

@@ -256,7 +256,7 @@ impl<O: Observer> Walk<'_, O> {
         let known =
             before.iter().zip(returns).find(|(b, _)| b.surface == contact.surface && b.normal == contact.normal);
         if let Some((b, known)) = known {
-            match known.entry {
+            match *known {
                 _ if b.lasting => return 0.0,
                 Entry::At { f, rate } if step.exact && f == hit.f => return rate / step.seconds,
                 _ if hit.f == 0.0 => return b.rate,

@@ -1,6 +1,7 @@
 //! Looking for a contact where it seems to be: the plane that is seen from there often tells all at once.
 
 use super::{Contact, Entry, Query, Support};
+use crate::bounds::largest;
 use crate::closest::Feature;
 use crate::order::by_size;
 use crate::rounding::{exponent, power_of_two};
@@ -9,7 +10,7 @@ use nalgebra::Vector3;
 /// How often to look ahead: the edge that is nearest first may not be the one, nor its end.
 const MAX_LOOKS: u32 = 3;
 
-/// Steps to a place to look at: a straight path needs one, and a parabola doubles its digits with each.
+/// Steps to a place to look at: a straight path needs one, and a parabola trebles its digits with each.
 const MAX_STEPS: u32 = 6;
 
 /// What a look ahead told.
@@ -22,39 +23,39 @@ pub(super) enum Ahead {
 
 impl Query<'_> {
     /// Looks at the triangle from where the ball seems to meet `feature`, which is nearest to it at `f`. Any plane with the triangle behind it
-    /// that the ball does not overlap at `f` is a certificate from there on, wherever it was taken.
-    pub(super) fn look_ahead(&self, feature: Feature, f: f64, to: f64, rounds: &mut u64) -> Ahead {
+    /// that the ball does not overlap at `f` is a certificate from there on, wherever it was taken. There is no contact before `free`, that is known.
+    pub(super) fn look_ahead(&self, feature: Feature, f: f64, free: f64, to: f64, rounds: &mut u64) -> Ahead {
         // In a unit in which squares are in range.
         let unit = power_of_two(-exponent(self.size));
-        let (mut f, mut feature) = (f, feature);
+        let (mut f, mut free, mut feature) = (f, free, feature);
         for _ in 0..MAX_LOOKS {
-            let Some(there) = self.seems_to_touch(feature, f, unit).filter(|there| *there < self.end) else { break };
+            let Some(there) = self.seems_to_touch(feature, free, unit).filter(|there| *there < self.end) else { break };
             *rounds += 1;
             let near = 2.0 * self.bound_at(there);
-            let (support, plane) = Support::near(self.ball, self.asked, there, near);
+            let (closest, plane) = Support::near(self.ball, self.asked, there, near);
             if plane.at(f) <= 2.0 * self.bound_at(f) {
                 break;
             }
-            let (entry, bound) = self.meets(support.gap, &support.normal, f);
+            let (entry, bound) = self.meets(&plane, f);
             f = match entry {
                 Entry::At { f: next, .. } if next <= to => next,
                 _ => return Ahead::Ends(Contact::Miss),
             };
+            free = largest(free, f);
             if plane.at(there).abs() <= near && plane.rate(there) < 0.0 {
-                let feature = support.feature;
-                let f = self.polish((support, plane), f, bound, rounds);
-                return Ahead::Ends(Contact::At { f, feature });
+                let f = self.polish((closest, plane, there), f, bound, rounds);
+                return Ahead::Ends(Contact::At { f, feature: closest });
             }
-            if support.feature == feature {
+            if closest == feature {
                 break;
             }
-            feature = support.feature;
+            feature = closest;
         }
-        Ahead::FreeUntil(f)
+        Ahead::FreeUntil(free)
     }
 
-    /// Where after `f` the ball seems to touch a vertex or the line of an edge, or to pass it: as if the path went straight on, and again from there. Rounding
-    /// and the other features are not asked. `unit` is what lengths are multiplied by.
+    /// Where after `f` the ball seems to touch a vertex or the line of an edge, or to pass it: as if the square of its distance were a parabola, and again
+    /// from there (Halley's method). Rounding and the other features are not asked. `unit` is what lengths are multiplied by.
     fn seems_to_touch(&self, feature: Feature, f: f64, unit: f64) -> Option<f64> {
         let (path, radius) = (self.ball.path, self.ball.radius * unit);
         let corners = self.asked.corners().map(|corner| corner * unit);
@@ -78,7 +79,8 @@ impl Query<'_> {
             if c.abs() <= near {
                 break;
             }
-            let discriminant = b * b - a * c;
+            let bend = across(path.second_derivative(at) * unit);
+            let discriminant = b * b - (a + away.dot(&bend)) * c;
             if discriminant < 0.0 || b >= 0.0 {
                 at -= b / a; // where it is nearest
                 break;

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::path::Path;
+use crate::rounding::UNIT_ROUNDOFF;
 use nalgebra::Point3;
 
 const CORNERS: [[f64; 3]; 3] = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]];
@@ -177,12 +178,30 @@ fn a_ball_leads_into_the_triangle_where_it_comes_to_the_height_of_its_radius() {
 fn a_triangle_is_off_the_plane_through_the_origin_by_its_nearest_corner() {
     let at = |heights: [f64; 3]| [0, 1, 2].map(|i| Vector3::from(CORNERS[i]) + Vector3::z() * heights[i]);
     for side in [1.0, -1.0] {
-        for heights in [[2.0, 3.0, 4.0], [4.0, 2.0, 3.0], [3.0, 4.0, 2.0]] {
-            let corners = at(heights.map(|z| side * z));
-            let off = |reach: f64| is_off_plane(&corners, &Vector3::z(), reach);
+        for triple in [[2.0, 3.0, 4.0], [4.0, 2.0, 3.0], [3.0, 4.0, 2.0]] {
+            let corners = at(triple.map(|z| side * z));
+            let off = |reach: f64| is_off_plane(&heights(&corners, &Vector3::z()), reach);
             assert!(off(2.0 * LESS) && !off(2.0) && !off(2.0 * MORE));
         }
-        assert!(!is_off_plane(&at([side, 2.0 * side, -3.0 * side]), &Vector3::z(), 0.5), "it goes through");
+        assert!(!is_off_plane(&heights(&at([side, 2.0 * side, -3.0 * side]), &Vector3::z()), 0.5), "it goes through");
     }
-    assert!(!is_off_plane(&at([2.0, 3.0, 4.0]), &Vector3::zeros(), 0.0), "no normal tells nothing");
+    assert!(!is_off_plane(&heights(&at([2.0, 3.0, 4.0]), &Vector3::zeros()), 0.0), "no normal tells nothing");
+}
+
+#[test]
+fn over_the_inside_is_what_is_sure_to_be() {
+    let of = |x: f64, y: f64, height: f64| {
+        let corners = [(0.0, 0.0), (4.0, 0.0), (0.0, 4.0)].map(|(a, b)| Vector3::new(a - x, b - y, -height));
+        // However it is wound, and from either side.
+        let [a, b, c] = corners;
+        let both = [corners, [a, c, b]].map(|corners| is_over(&corners, &Vector3::z()));
+        assert_eq!(both[0], both[1]);
+        both[0]
+    };
+    assert!(of(1.0, 1.0, 3.0) && of(1.0, 1.0, -3.0) && of(1.0, 1.0, 0.0) && of(0.0625, 3.5, 1.0));
+    // Outside, on the border, and beside it by less than rounding.
+    assert!(!of(-1.0, 1.0, 1.0) && !of(3.0, 3.0, 1.0) && !of(2.0, 0.0, 1.0) && !of(0.0, 0.0, 1.0));
+    assert!(!of(2.0, 64.0 * UNIT_ROUNDOFF, 1.0) && of(2.0, 4096.0 * UNIT_ROUNDOFF, 1.0));
+    let flat = [Vector3::x(), Vector3::y(), Vector3::z()];
+    assert!(!is_over(&flat, &Vector3::zeros()), "no normal tells nothing");
 }

@@ -161,8 +161,8 @@ struct Search<'a, F> {
     left: Left,
     /// Faces that are behind what the ball holds to, all through the piece.
     hidden: SmallVec<[u32; 8]>,
-    /// Faces that the ball does not seem to hit inside: asked when the one is known that it does hit.
-    later: SmallVec<[(u32, f64); 8]>,
+    /// Faces that the ball does not seem to hit inside: looked at again when the one is known that it does hit.
+    later: SmallVec<[u32; 8]>,
     work: Work,
 }
 
@@ -191,18 +191,14 @@ impl<F: Fn(u32) -> f64> Search<'_, F> {
         if self.stretch.is_off_face(&corners, normal) {
             return;
         }
-        if self.stretch.is_off_nearest(&corners) {
-            return;
-        }
-        let free = self.free_until(face);
-        if free > self.limit {
-            return;
-        }
         if self.best.is_none() && !self.stretch.leads_into(&corners, normal, self.ball.radius) {
-            self.later.push((face, free));
+            self.later.push(face);
             return;
         }
-        self.ask(face, corners, free);
+        if self.best.is_some() && self.stretch.is_off_nearest(&corners) {
+            return;
+        }
+        self.ask(face, corners);
     }
 
     /// The f before which the ball is known not to touch `face`; notes a face of which that is all there is to know.
@@ -231,8 +227,12 @@ impl<F: Fn(u32) -> f64> Search<'_, F> {
         self.ball.holds.iter().all(|hold| hold.until <= self.limit || off(hold))
     }
 
-    /// Asks a face with these `corners`, of which the ball is `free` for so long.
-    fn ask(&mut self, face: u32, corners: [Vector3<f64>; 3], free: f64) {
+    /// Asks a face with these `corners`, unless the ball is known not to touch it in the piece.
+    fn ask(&mut self, face: u32, corners: [Vector3<f64>; 3]) {
+        let free = self.free_until(face);
+        if free > self.limit {
+            return;
+        }
         // Asked from the start of the path, not of the piece: the answer does not depend on the pieces.
         let asked = Asked::new(corners);
         if self.best.is_some() {
@@ -256,14 +256,12 @@ impl<F: Fn(u32) -> f64> Search<'_, F> {
 
     /// Asks what was put off, as far as it is still of interest.
     fn conclude(&mut self) {
-        for (face, free) in std::mem::take(&mut self.later) {
+        for face in std::mem::take(&mut self.later) {
             let corners = self.mesh.triangle_from(face, &self.start);
-            let normal = self.mesh.plain_normal(face);
-            let is_off = || self.stretch.is_off_face(&corners, normal) || self.stretch.is_off_nearest(&corners);
-            if free > self.limit {
-                self.left.faces.push((face, f64::INFINITY));
-            } else if self.best.is_none() || !is_off() {
-                self.ask(face, corners, free);
+            // Without a hit, the piece is the one for which its plane did not tell.
+            let is_off_face = self.best.is_some() && self.stretch.is_off_face(&corners, self.mesh.plain_normal(face));
+            if !(is_off_face || self.stretch.is_off_nearest(&corners)) {
+                self.ask(face, corners);
             }
         }
         self.left.to = self.limit;

@@ -5,7 +5,7 @@ use crate::bounds::Aabb;
 use crate::closest::Asked;
 use crate::mesh::Mesh;
 use crate::rounding::{contact_doubt, position_bound};
-use crate::screen::is_off_plane;
+use crate::screen::{heights, is_off_plane};
 use nalgebra::{Point3, Vector3};
 use smallvec::SmallVec;
 
@@ -109,7 +109,7 @@ impl Mesh {
         work.nodes += self.bvh().visit_box(&around, |face| {
             work.triangles += 1;
             let corners = self.triangle_from(face, centre);
-            if !is_off_plane(&corners, self.plain_normal(face), distance)
+            if !is_off_plane(&heights(&corners, self.plain_normal(face)), distance)
                 && Asked::new(corners).closest(&Vector3::zeros()).offset.norm() <= distance
             {
                 faces.push(face);

@@ -97,5 +97,5 @@ fn the_work_of_a_query_is_counted() {
     let ball = MovingBall { path: &path, radius: 1.0, holds: &[] };
     let found = m.first_contact(&ball, 1.0, |_| 0.0, &mut work);
     assert_eq!(found, Some(FirstContact { f: 0.5, face: 0 }));
-    assert!(work.nodes == 2 && work.triangles >= 3 && work.rounds >= 2, "{work:?}");
+    assert!(work.nodes == 2 && work.triangles >= 3 && work.rounds >= 1, "{work:?}");
 }

@@ -1,12 +1,12 @@
 //! What a ball touches where it is: faces, and the edges and vertices that no touched face hides.
 
 use super::{Surroundings, Work};
-use crate::bounds::{Aabb, amax};
+use crate::bounds::{Aabb, amax, largest};
 use crate::closest::{Asked, Feature};
 use crate::mesh::{Fold, Mesh};
 use crate::order::by_size;
-use crate::rounding::{position_bound, screen_bound};
-use crate::screen::is_off_plane;
+use crate::rounding::{hold_bound, position_bound, screen_bound};
+use crate::screen::{heights, is_off_plane, is_over};
 use crate::site::Site;
 use nalgebra::{Point3, Vector3};
 use smallvec::SmallVec;
@@ -24,7 +24,7 @@ pub struct Touch {
 struct Touching<'a> {
     mesh: &'a Mesh,
     centre: &'a Point3<f64>,
-    ahead: Vector3<f64>,
+    heading: &'a Vector3<f64>,
     radius: f64,
     tolerance: f64,
     doubt: f64,
@@ -123,17 +123,28 @@ impl Mesh {
 }
 
 impl<'a> Touching<'a> {
-    fn new(mesh: &'a Mesh, centre: &'a Point3<f64>, heading: &Vector3<f64>, radius: f64, tolerance: f64) -> Self {
-        let ahead = heading.try_normalize(0.0).unwrap_or_else(Vector3::zeros) * tolerance;
+    fn new(mesh: &'a Mesh, centre: &'a Point3<f64>, heading: &'a Vector3<f64>, radius: f64, tolerance: f64) -> Self {
         let doubt = screen_bound(mesh.farthest_from(centre).max(radius + tolerance));
-        Self { mesh, centre, ahead, radius, tolerance, doubt, found: SmallVec::new() }
+        Self { mesh, centre, heading, radius, tolerance, doubt, found: SmallVec::new() }
     }
 
     /// Notes what of `face` is touched, if anything is.
     fn ask(&mut self, face: u32) {
         let (mesh, reach) = (self.mesh, self.radius + self.tolerance);
         let corners = mesh.triangle_from(face, self.centre);
-        if is_off_plane(&corners, mesh.plain_normal(face), reach + self.doubt) {
+        let normal = mesh.plain_normal(face);
+        let heights = heights(&corners, normal);
+        if is_off_plane(&heights, reach + self.doubt) {
+            return;
+        }
+        // Where the normal is the face's own, and not shared or declared, and rounding does not decide.
+        let [height, b, c] = heights;
+        let bound = hold_bound(largest(largest(amax(&corners[0]), amax(&corners[1])), amax(&corners[2])));
+        if largest((b - height).abs(), (c - height).abs()) <= bound
+            && height.abs() + 2.0 * bound <= reach
+            && is_over(&corners, normal)
+        {
+            self.found.push((Site::Face(face), normal * -height));
             return;
         }
         let asked = Asked::new(corners);
@@ -148,7 +159,10 @@ impl<'a> Touching<'a> {
             }
             Feature::Face => Site::Face(face),
             // Face before edge before vertex.
-            feature => mesh.site(face, feature.min(asked.closest(&self.ahead).feature)),
+            feature => {
+                let ahead = self.heading.try_normalize(0.0).unwrap_or_else(Vector3::zeros) * self.tolerance;
+                mesh.site(face, feature.min(asked.closest(&ahead).feature))
+            }
         };
         self.found.push((site, closest.offset));
     }
@@ -161,11 +175,11 @@ impl<'a> Touching<'a> {
             found.sort_by(|(a, u), (b, v)| a.cmp(b).then_with(|| by_size(u, v)));
             found.dedup_by_key(|(site, _)| *site);
         }
+        let touch = |&(site, away): &(Site, _)| mesh.normal_at(site, &away).map(|normal| Touch { site, normal });
+        if let [alone] = found.as_slice() {
+            return touch(alone).into_iter().collect();
+        }
         let hidden = |site: &Site| found.iter().any(|(other, _)| mesh.hides(other, site));
-        found
-            .iter()
-            .filter(|(site, _)| !hidden(site))
-            .filter_map(|&(site, away)| mesh.normal_at(site, &away).map(|normal| Touch { site, normal }))
-            .collect()
+        found.iter().filter(|(site, _)| !hidden(site)).filter_map(touch).collect()
     }
 }
