@@ -8,7 +8,6 @@ use carom_dynamics::counters::Counters;
 use carom_dynamics::plan::Plan;
 use carom_dynamics::run::run_balls;
 use carom_dynamics::simulate::simulate;
-use carom_geometry::bounds::Aabb;
 use carom_geometry::bvh::Bvh;
 use carom_geometry::mesh::Mesh;
 use std::hint::black_box;
@@ -148,8 +147,7 @@ fn measure(what: &str, size: f64) -> Result<(f64, Counters)> {
         "threads" => batch(&Plan::new(&balls_on_terrain(squares(1.0e5), 10_000, 0.7, 1.0)?)?, Some(size as usize))?,
         "tree" => {
             let (vertices, faces) = terrain();
-            let boxes: Vec<Aabb> = faces.iter().map(|f| Aabb::of_points(&f.map(|v| vertices[v as usize]))).collect();
-            (timed(|| _ = black_box(Bvh::build(&boxes))), Counters::default())
+            (timed(|| _ = black_box(Bvh::of_triangles(&vertices, &faces))), Counters::default())
         }
         "mesh" => {
             let (vertices, faces) = terrain();

@@ -154,6 +154,28 @@ impl Bvh {
         build::build(boxes.len(), &Boxes(|i| boxes[i]))
     }
 
+    /// The tree over triangles with the corners `vertices[faces[i]]`; item i is `faces[i]`. Its leaves have the corners, so that a query is shown few that it
+    /// misses. As with the lists, a place beyond their end panics.
+    ///
+    /// ```
+    /// use carom_geometry::bvh::{Bvh, FatSegment};
+    /// use carom_geometry::nalgebra::Point3;
+    ///
+    /// let vertices = [[0.0, 0.0], [4.0, 0.0], [0.0, 4.0], [4.0, 4.0]].map(|[x, y]| Point3::new(x, y, 0.0));
+    /// let tree = Bvh::of_triangles(&vertices, &[[0, 1, 2], [3, 2, 1]]);
+    /// let down = FatSegment { from: Point3::new(1.0, 1.0, 1.0), to: Point3::new(1.0, 1.0, -1.0), radius: 0.0 };
+    /// let mut met = Vec::new();
+    /// tree.visit(&down, |triangle| {
+    ///     met.push(triangle);
+    ///     f64::INFINITY
+    /// });
+    /// assert_eq!(met, [0]);
+    /// ```
+    pub fn of_triangles(vertices: &[Point3<f64>], faces: &[[u32; 3]]) -> Self {
+        let corners = |face: u32| faces[face as usize].map(|v| vertices[v as usize]);
+        Self::of_faces(faces.len(), |face| Aabb::of_points(&corners(face as u32)), corners)
+    }
+
     /// The tree over `count` faces with these boxes and corners, which are computed as often as they are needed. A face whose box is empty is in no answer.
     pub(crate) fn of_faces(
         count: usize,
