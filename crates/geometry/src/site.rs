@@ -6,6 +6,7 @@ use crate::closest::Feature;
 use crate::mesh::{Fold, Mesh};
 use crate::order::by_size;
 use nalgebra::{Point3, Vector3};
+use smallvec::{SmallVec, smallvec};
 
 /// A place of a mesh: a face, an edge or a vertex. Each edge and vertex has one name, whichever face it was found by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -79,11 +80,11 @@ impl Mesh {
     }
 
     /// The faces that `site` is, or that meet in it.
-    pub fn faces_at(&self, site: Site) -> Vec<u32> {
+    pub fn faces_at(&self, site: Site) -> SmallVec<[u32; 8]> {
         match site {
-            Site::Face(face) => vec![face],
+            Site::Face(face) => smallvec![face],
             Site::Edge { face, edge } => std::iter::once(face).chain(self.neighbours(face, edge.into())).collect(),
-            Site::Vertex { vertex, .. } => self.vertex_faces(vertex).to_vec(),
+            Site::Vertex { vertex, .. } => self.vertex_faces(vertex).into(),
         }
     }
 
@@ -99,7 +100,7 @@ impl Mesh {
     }
 
     /// The bounds of the region in which `site` is what of the mesh is nearest to a ball beside it.
-    pub fn region(&self, site: Site) -> Vec<RegionBound> {
+    pub fn region(&self, site: Site) -> SmallVec<[RegionBound; 8]> {
         let vertex = |v: u32| self.vertices()[v as usize];
         match site {
             Site::Face(face) => (0..3u8)
@@ -115,7 +116,7 @@ impl Mesh {
                 .collect(),
             Site::Edge { face, edge } => {
                 let [a, b] = self.edge_ends(face, edge);
-                let mut bounds = Vec::new();
+                let mut bounds = SmallVec::new();
                 if let Some(along) = (vertex(b) - vertex(a)).try_normalize(0.0) {
                     bounds.push(RegionBound { outward: -along, point: vertex(a), next: self.vertex_site(a) });
                     bounds.push(RegionBound { outward: along, point: vertex(b), next: self.vertex_site(b) });
@@ -129,7 +130,7 @@ impl Mesh {
                 bounds
             }
             Site::Vertex { vertex: v, .. } => {
-                let mut bounds: Vec<RegionBound> = Vec::new();
+                let mut bounds: SmallVec<[RegionBound; 8]> = SmallVec::new();
                 for &face in self.vertex_faces(v) {
                     for edge in 0..3u8 {
                         let [a, b] = self.edge_ends(face, edge);
