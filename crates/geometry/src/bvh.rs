@@ -161,8 +161,8 @@ impl Bvh {
     /// use carom_geometry::bvh::{Bvh, FatSegment};
     /// use carom_geometry::nalgebra::Point3;
     ///
-    /// let vertices = [[0.0, 0.0], [4.0, 0.0], [0.0, 4.0], [4.0, 4.0]].map(|[x, y]| Point3::new(x, y, 0.0));
-    /// let tree = Bvh::of_triangles(&vertices, &[[0, 1, 2], [3, 2, 1]]);
+    /// let vertices = [[0.0, 0.0], [4.0, 0.0], [0.0, 4.0], [4.0, 4.0], [8.0, 0.0]].map(|[x, y]| Point3::new(x, y, 0.0));
+    /// let tree = Bvh::of_triangles(&vertices, &[[0, 1, 2], [1, 4, 3]]);
     /// let down = FatSegment { from: Point3::new(1.0, 1.0, 1.0), to: Point3::new(1.0, 1.0, -1.0), radius: 0.0 };
     /// let mut met = Vec::new();
     /// tree.visit(&down, |triangle| {
