@@ -3,7 +3,7 @@
 //! At one surface it is the chapter's: v_n and v_t apart, v_n+ = -c_r v_n-, v_t+ by friction, v+ = v_n+ + v_t+. At several at
 //! once it is Moreau's: p, the velocity nearest to v- that leaves none of them behind, takes the place of v_t, and what p adds
 //! along each normal the place of v_n; for one surface that is the chapter's law to the letter. (J. J. Moreau, in *Nonsmooth
-//! Mechanics and Applications*, 1988.)
+//! Mechanics and Applications*, 1988.) Where the surfaces differ in c_r, no more comes back than the greatest c_r of what came in.
 
 use crate::contacts::{Contact, PerContact};
 use crate::counters::Counters;
