@@ -89,6 +89,9 @@ impl Checker<'_> {
                 let alone = together == 1 && touched.iter().all(|(n, _)| (n - e.normal).norm() <= angle);
                 if first && touched.iter().all(|(_, s)| self.scene.surfaces[*s].material.friction == Friction::None) {
                     let change = e.velocity - e.velocity_in;
+                    // The normals of planes do not depend on where the ball is.
+                    let is_plane = |surface: usize| self.world.planes.iter().any(|q| q.2 == surface);
+                    let angle = if touched.iter().all(|(_, s)| is_plane(*s)) { 64.0 * U } else { angle };
                     if let Some((beside, sine)) = beside(&change, &touched, angle) {
                         let allowed = (rounding + angle * change.norm()) / sine;
                         self.note(Flaw::Push, beside, allowed, || format!("{e:?}, touched {touched:?}"));
