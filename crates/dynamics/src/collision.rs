@@ -273,7 +273,7 @@ impl<'a> Obstacles<'a> {
     }
 
     /// Where a point that starts in `state` with acceleration `a` is clear of the faces it lies on: off them by the radius that it has there, on the side
-    /// that [`is_behind`] tells. Which way a face is wound is of no matter.
+    /// it moves to or is pressed from. Which way a face is wound is of no matter.
     pub fn clear_of_faces(
         &self,
         state: &State,

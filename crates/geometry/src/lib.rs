@@ -62,6 +62,7 @@ mod shear;
 pub mod order;
 pub mod bvh;
 mod exact;
+mod twofold;
 pub mod predicates;
 pub mod projection;
 pub mod normal;

@@ -2,6 +2,7 @@
 
 use crate::exact::{self, Exact, ExactVector, exact};
 use crate::rounding::{UNIT_LENGTH_BOUND, VECTOR_AREA_BOUND, exponent, scale, vector_area_bound};
+use crate::twofold::{two_difference, two_product};
 use nalgebra::{Point3, UnitVector3, Vector3};
 
 /// `v` divided by its length, whatever its size; none if it is zero or not finite.
@@ -103,27 +104,6 @@ pub(crate) fn cross_compensated(origin: &Point3<f64>, b: &Point3<f64>, c: &Point
         let mixed = (b[j].0 * c[k].1 + b[j].1 * c[k].0) - (b[k].0 * c[j].1 + b[k].1 * c[j].0);
         head + (tail + (left_tail - right_tail) + mixed)
     })
-}
-
-/// a - b as a rounded value and its exact error (Knuth).
-fn two_difference(a: f64, b: f64) -> (f64, f64) {
-    let x = a - b;
-    let b_part = a - x;
-    let a_part = x + b_part;
-    (x, (a - a_part) + (b_part - b))
-}
-
-/// a b as a rounded value and its exact error (Dekker), by splitting each factor into halves of 26 bits.
-fn two_product(a: f64, b: f64) -> (f64, f64) {
-    const SPLITTER: f64 = 134_217_729.0; // 2^27 + 1
-    let halves = |x: f64| {
-        let c = SPLITTER * x;
-        let high = c - (c - x);
-        (high, x - high)
-    };
-    let x = a * b;
-    let ((ah, al), (bh, bl)) = (halves(a), halves(b));
-    (x, al * bl - (((x - ah * bh) - al * bh) - ah * bl))
 }
 
 #[cfg(test)]

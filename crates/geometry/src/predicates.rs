@@ -1,7 +1,8 @@
 //! Signs of orientation determinants: a floating-point filter, then expansions, then rationals. Never wrong on finite input.
 
 use crate::exact::{self, Exact, compare_zero, exact};
-use crate::rounding::{exponent, orient2d_bound, orient3d_bound, scale, signed_distance_bound};
+use crate::rounding::{exponent, orient2d_bound, orient3d_bound, orient3d_twofold_bound, scale, signed_distance_bound};
+use crate::twofold::Twofold;
 use nalgebra::{Point2, Point3, Vector3};
 use robust::{Coord, Coord3D};
 use std::cmp::Ordering;
@@ -142,6 +143,19 @@ pub(crate) fn orient3d_values<const N: usize>(
     })
 }
 
+/// The determinant of [`orient3d`] to about a rounding, and a bound on its error; no number where it overflows.
+pub(crate) fn orient3d_twofold([a, b, c]: &[Point3<f64>; 3], p: &Point3<f64>) -> (f64, f64) {
+    let from = |q: &Point3<f64>| [0, 1, 2].map(|i| Twofold::difference(q[i], a[i]));
+    let (b, c, d) = (from(b), from(c), from(p));
+    let minor = |i: usize, j: usize| b[i].times(c[j]).minus(b[j].times(c[i]));
+    let sizes = |i: usize, j: usize| (b[i].0 * c[j].0).abs() + (b[j].0 * c[i].0).abs();
+    let places = [(1, 2), (2, 0), (0, 1)];
+    let [x, y, z] = [0, 1, 2].map(|k| d[k].times(minor(places[k].0, places[k].1)));
+    let permanent: f64 = (0..3).map(|k| d[k].0.abs() * sizes(places[k].0, places[k].1)).sum();
+    let value = x.plus(y).plus(z).0;
+    (value, orient3d_twofold_bound(value, permanent, d.iter().map(|x| x.0.abs()).sum()))
+}
+
 /// The determinant of [`orient3d`], exactly.
 pub(crate) fn orient3d_exact(a: &Point3<f64>, b: &Point3<f64>, c: &Point3<f64>, d: &Point3<f64>) -> Exact {
     let normal = exact::cross(&exact::difference(b, a), &exact::difference(c, a));
@@ -220,6 +234,7 @@ fn in_range<const N: usize>(coordinates: [f64; N], (low, high): (i32, i32)) -> O
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rounding::UNIT_ROUNDOFF;
     use proptest::prelude::*;
 
     fn exact2d(a: &Point2<f64>, b: &Point2<f64>, c: &Point2<f64>) -> Sign {
@@ -293,6 +308,27 @@ mod tests {
         assert_eq!(orient3d_value(&a, &b, &c, &o), (exact, orient3d_bound(3746.0, 41.0)));
         let up = [2.0, 3.0, 5.0].map(|z| p(0.0, 0.0, z));
         assert_eq!(orient3d_value(&up[0], &up[1], &up[2], &o), (0.0, 12.0 * f64::MIN_POSITIVE));
+    }
+
+    #[test]
+    fn the_twofold_determinant_is_within_its_bound_however_near_to_the_plane() {
+        let t = [[0.1, 0.2, 0.3], [1.3, 0.7, -0.4], [-0.6, 0.9, 0.35]].map(Point3::from);
+        let on = Point3::from((t[0].coords + t[1].coords + t[2].coords) / 3.0);
+        let normal = (t[1] - t[0]).cross(&(t[2] - t[0]));
+        let mut worst: f64 = 0.0;
+        for (j, k) in (0..60).flat_map(|j| [-150, 0, 150].map(|k| (j, k))) {
+            let [a, b, c, p] = [t[0], t[1], t[2], on + normal * scale(1.0, -j)].map(|q| q.map(|x| scale(x, k)));
+            let (value, bound) = orient3d_twofold(&[a, b, c], &p);
+            let off = exact::nearest(&(orient3d_exact(&a, &b, &c, &p) - exact(value))).abs();
+            assert!(off <= bound, "off by {off:e}, not {bound:e}: 2^-{j} off the plane, scale 2^{k}");
+            // 2^-45 off the plane, u^2 of the products is 2^-8 u of what is left of them.
+            worst = worst.max(if j <= 45 { bound / value.abs() } else { 0.0 });
+        }
+        assert!(worst <= 4.0 * UNIT_ROUNDOFF, "known to {worst:e} of itself");
+        // Beyond the range of f64 it is no number, and no bound holds.
+        let far = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|v| Point3::from(v) * scale(1.0, 1000));
+        let (value, bound) = orient3d_twofold(&far, &Point3::origin());
+        assert!(value.is_nan() || bound.is_nan() || bound >= value.abs(), "{value} to {bound}");
     }
 
     #[test]

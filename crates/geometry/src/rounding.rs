@@ -30,6 +30,17 @@ pub fn orient3d_bound(permanent: f64, column: f64) -> f64 {
     (7.0 + 56.0 * UNIT_ROUNDOFF) * UNIT_ROUNDOFF * permanent + f64::MIN_POSITIVE * (column + 2.0)
 }
 
+/// Bound on the error of the same determinant from exact differences, in twice the precision, rounded to `value`.
+///
+/// Each product of two differences is off by 9 u^2 of it and their difference by 3 u^2 of both more, the product with the column by another 9 u^2 and the two
+/// sums by 3 u^2 each: 27 u^2 of the permanent, and 5 more for its own roundings. The value is the first part of the sum, off by u of it. What is left out where
+/// products underflow is given as in [`orient3d_bound`], for the errors of the products as well as for them.
+pub(crate) fn orient3d_twofold_bound(value: f64, permanent: f64, column: f64) -> f64 {
+    2.0 * UNIT_ROUNDOFF * value.abs()
+        + 32.0 * UNIT_ROUNDOFF * UNIT_ROUNDOFF * permanent
+        + 8.0 * f64::MIN_POSITIVE * (column + 2.0)
+}
+
 /// Bound on the error of x1 y2 - x2 y1 of two points that were seen from the start of a segment and sheared along its longest axis:
 /// no |x| or |y| is larger than `across` as computed, and no distance along the axis than `along`.
 ///

@@ -4,7 +4,7 @@ mod sheared;
 
 use crate::closest::Feature;
 use crate::exact::{self, Exact, ExactVector};
-use crate::predicates::{Sign, orient3d, orient3d_exact, orient3d_values};
+use crate::predicates::{Sign, orient3d, orient3d_exact, orient3d_twofold, orient3d_values};
 use crate::rounding::{SEGMENT_FRACTION_BOUND, UNIT_ROUNDOFF};
 use nalgebra::Point3;
 use sheared::Passage;
@@ -127,22 +127,22 @@ fn feature(on: [bool; 3]) -> Feature {
 /// f = d0 / (d0 - d1) (R8) of end points strictly on either side of the plane, rounded down.
 ///
 /// `heights` are d0 and d1 in some unit, computed, each with a bound on its error.
-fn fraction(
-    p0: &Point3<f64>,
-    p1: &Point3<f64>,
-    [a, b, c]: &[Point3<f64>; 3],
-    [(d0, e0), (d1, e1)]: [(f64, f64); 2],
-) -> f64 {
-    let (d0, d1) = (d0.abs(), d1.abs());
-    let whole = d0 + d1;
-    // f grows with d0 and falls with d1, so this is below the exact one; 4 u for the four roundings.
-    let low = (d0 - e0) / ((d0 - e0) + (d1 + e1)) * (1.0 - 4.0 * UNIT_ROUNDOFF);
-    // Moving d0 by e0 and d1 by e1 moves f by (e0 + e1) / whole at most, and low is another rounding below.
-    if e0 < d0 && whole.is_finite() && 2.0 * (e0 + e1) <= (SEGMENT_FRACTION_BOUND - 8.0 * UNIT_ROUNDOFF) * whole {
-        return low;
-    }
-    let (d0, d1) = (orient3d_exact(a, b, c, p0), orient3d_exact(a, b, c, p1));
-    exact::round_down(&(&d0 / (&d0 - d1)))
+fn fraction(p0: &Point3<f64>, p1: &Point3<f64>, triangle: &[Point3<f64>; 3], heights: [(f64, f64); 2]) -> f64 {
+    let low = |[(d0, e0), (d1, e1)]: [(f64, f64); 2]| {
+        let (d0, d1) = (d0.abs(), d1.abs());
+        let whole = d0 + d1;
+        // f grows with d0 and falls with d1, so this is below the exact one; 4 u for the four roundings.
+        let low = (d0 - e0) / ((d0 - e0) + (d1 + e1)) * (1.0 - 4.0 * UNIT_ROUNDOFF);
+        // Moving d0 by e0 and d1 by e1 moves f by (e0 + e1) / whole at most, and low is another rounding below.
+        let near = 2.0 * (e0 + e1) <= (SEGMENT_FRACTION_BOUND - 8.0 * UNIT_ROUNDOFF) * whole;
+        (e0 < d0 && whole.is_finite() && near).then_some(low)
+    };
+    let twofold = || low([p0, p1].map(|p| orient3d_twofold(triangle, p)));
+    low(heights).or_else(twofold).unwrap_or_else(|| {
+        let [a, b, c] = triangle;
+        let (d0, d1) = (orient3d_exact(a, b, c, p0), orient3d_exact(a, b, c, p1));
+        exact::round_down(&(&d0 / (&d0 - d1)))
+    })
 }
 
 /// A linear function of f: value at 0, and slope.
