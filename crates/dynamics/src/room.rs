@@ -20,9 +20,9 @@ pub(crate) fn check_room(scene: &Scene, planes: &[(usize, Plane)], farthest: f64
         let overlapped: Vec<_> = planes.iter().filter_map(beside).collect();
         for (i, (one, near, normal)) in overlapped.iter().enumerate() {
             for (other, far, opposite) in &overlapped[i + 1..] {
-                let faces = (normal + opposite).norm() <= rate_rounding(1.0);
+                let opposed = (normal + opposite).norm() <= rate_rounding(1.0);
                 let (width, diameter) = (near + far, 2.0 * b.radius());
-                if faces && width < diameter - touch_distance(farthest, 0.0) {
+                if opposed && width < diameter - touch_distance(farthest, 0.0) {
                     let surfaces = [*one, *other].map(|surface| scene.surfaces[surface].name.clone());
                     return Err(SceneError::NoRoom { ball, surfaces, width, diameter });
                 }

@@ -8,7 +8,7 @@ mod leaves;
 mod prism;
 
 use frame::{Frame, LocalSegment};
-use lanes::Sheared;
+use lanes::ShearedPoints;
 pub(crate) use leaves::Seen;
 use leaves::{Boxes, Faces, Leaves, Show, ShowBoxes, ShowFaces, Unit};
 use multiversion::multiversion;
@@ -229,7 +229,12 @@ impl Bvh {
             Leaves::Boxes(items) => walk(&self.nodes, &local, stack, &mut ShowBoxes { items, hit }),
             Leaves::Faces(units) => {
                 let prism = Prism::around(segment, shear, &self.bounds);
-                walk(&self.nodes, &local, stack, &mut ShowFaces { units, prism, sheared: Sheared::default(), hit })
+                walk(
+                    &self.nodes,
+                    &local,
+                    stack,
+                    &mut ShowFaces { units, prism, sheared: ShearedPoints::default(), hit },
+                )
             }
         }
     }
@@ -250,7 +255,7 @@ impl Bvh {
             Leaves::Boxes(items) => walk_box(&self.nodes, (&lo, &hi), stack, &mut ShowBoxes { items, hit }),
             Leaves::Faces(units) => {
                 let prism = Prism::of_box(query);
-                let mut leaves = ShowFaces { units, prism, sheared: Sheared::default(), hit };
+                let mut leaves = ShowFaces { units, prism, sheared: ShearedPoints::default(), hit };
                 walk_box(&self.nodes, (&lo, &hi), stack, &mut leaves)
             }
         }
@@ -276,7 +281,7 @@ fn walk_box(nodes: &[Node], bounds: (&[f32; 3], &[f32; 3]), stack: &mut [Pending
             bounds,
             stack,
             leaves,
-            |leaf: &[Unit], prism: &Prism, sheared: &mut Sheared| lanes::avx2::screen(leaf, prism, sheared),
+            |leaf: &[Unit], prism: &Prism, sheared: &mut ShearedPoints| lanes::avx2::screen(leaf, prism, sheared),
         ),
         _ => walk_box_by(nodes, bounds, stack, leaves, lanes::narrow::screen),
     }
@@ -288,7 +293,7 @@ fn walk_box_by(
     (lo, hi): (&[f32; 3], &[f32; 3]),
     stack: &mut [Pending],
     leaves: &mut impl Show,
-    screen: impl Fn(&[Unit], &Prism, &mut Sheared) -> u32,
+    screen: impl Fn(&[Unit], &Prism, &mut ShearedPoints) -> u32,
 ) -> u64 {
     let (mut pending, mut visited) = (1, 0);
     while pending > 0 {
@@ -319,7 +324,7 @@ fn walk(nodes: &[Node], segment: &LocalSegment, stack: &mut [Pending], leaves: &
             stack,
             leaves,
             |planes: &Planes, limit| lanes::avx2::entries(segment, planes, limit),
-            |leaf: &[Unit], prism: &Prism, sheared: &mut Sheared| lanes::avx2::screen(leaf, prism, sheared),
+            |leaf: &[Unit], prism: &Prism, sheared: &mut ShearedPoints| lanes::avx2::screen(leaf, prism, sheared),
         ),
         _ => walk_narrow(nodes, segment, stack, leaves),
     }
@@ -338,7 +343,7 @@ fn walk_by(
     stack: &mut [Pending],
     leaves: &mut impl Show,
     entries: impl Fn(&Planes, f32) -> ([f32; WIDTH], u32),
-    screen: impl Fn(&[Unit], &Prism, &mut Sheared) -> u32,
+    screen: impl Fn(&[Unit], &Prism, &mut ShearedPoints) -> u32,
 ) -> u64 {
     let (mut pending, mut visited) = (0, 0);
     // The limit that a leaf gave last, and the same in the part of the segment that is near the tree.

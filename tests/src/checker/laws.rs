@@ -92,9 +92,9 @@ impl Checker<'_> {
                     // The normals of planes do not depend on where the ball is.
                     let is_plane = |surface: usize| self.world.planes.iter().any(|q| q.2 == surface);
                     let angle = if touched.iter().all(|(_, s)| is_plane(*s)) { 64.0 * U } else { angle };
-                    if let Some((beside, sine)) = beside(&change, &touched, angle) {
+                    if let Some((off, sine)) = beside(&change, &touched, angle) {
                         let allowed = (rounding + angle * change.norm()) / sine;
-                        self.note(Flaw::Push, beside, allowed, || format!("{e:?}, touched {touched:?}"));
+                        self.note(Flaw::Push, off, allowed, || format!("{e:?}, touched {touched:?}"));
                     }
                 }
                 if alone && exact {

@@ -48,9 +48,12 @@ fn material(
     materials: &BTreeMap<String, Option<Material>>,
 ) -> Option<Material> {
     let names = || materials.keys().map(String::as_str);
-    let help = |word: &str, what: &str| match materials.is_empty() {
-        true => "add a material to the scene, such as [materials.wall] with `restitution`, and name it here".to_owned(),
-        false => choose(word, what, names()),
+    let help = |word: &str, what: &str| {
+        if materials.is_empty() {
+            "add a material to the scene, such as [materials.wall] with `restitution`, and name it here".to_owned()
+        } else {
+            choose(word, what, names())
+        }
     };
     match &table.material {
         None => {

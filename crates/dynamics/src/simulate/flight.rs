@@ -129,8 +129,9 @@ impl<O: Observer> Walk<'_, O> {
             contact.rate = self.rate(step, hit, contact, &before, returns);
         }
         if self.standstill > 0 && contacts.iter().all(|c| c.rate >= 0.0) {
-            // Nearest to the ball is an edge that it leaves, but by less than rounding: the search has seen the vertex at its end, to which the ball
-            // comes nearer. Either is touched; the one that closes is answered, or it would be found for ever.
+            // No time passes, and what is nearest to the ball is left, but by less than rounding: the search has seen its neighbour, to which the ball
+            // comes nearer (the vertex at the end of an edge, the face beyond a shallow fold). Either is touched; the one that closes is answered, or
+            // it would be found for ever.
             let place = |c: &Contact| (c.surface, c.site);
             let seen = self.obstacles.seen(&hit, &self.state.position, &velocity);
             if let Some(seen) = seen.filter(|seen| contacts.iter().all(|c| place(c) != place(seen)))

@@ -1,8 +1,8 @@
-//! Building the tree: binned surface area heuristic, straight into wide nodes.
+//! Building the tree: by the binned surface area heuristic, many items straight into wide nodes, few by way of cuts in two.
 
 use super::collapse::Cuts;
 use super::frame::Frame;
-use super::leaves::Content;
+use super::leaves::{Content, MOST};
 use super::{Bvh, Child, Node, WIDTH};
 use crate::bounds::Aabb;
 use rayon::prelude::*;
@@ -70,16 +70,23 @@ impl Box32 {
         [x, y, z]
     }
 
-    /// Half the surface, to which the chance of being met is proportional; -infinity or NaN never, 0 if empty.
+    /// How likely a part of it is to be met, up to a factor: by its surface, or where the whole has none by its sides.
     #[inline]
-    pub(super) fn area(&self) -> f32 {
+    pub(super) fn measure(&self) -> impl Fn(&Self) -> f32 + use<> {
+        let has_area = self.area() > 0.0;
+        move |part| if has_area { part.area() } else { part.girth() }
+    }
+
+    /// Half the surface; -infinity or NaN never, 0 if empty.
+    #[inline]
+    fn area(&self) -> f32 {
         let [x, y, z] = self.sides();
         x * y + y * z + z * x
     }
 
-    /// Sum of the sides, the measure where there is no surface.
+    /// Sum of the sides.
     #[inline]
-    pub(super) fn girth(&self) -> f32 {
+    fn girth(&self) -> f32 {
         self.sides().iter().sum()
     }
 }
@@ -214,7 +221,7 @@ impl<C: Content> Part<C> {
     }
 
     fn add_leaf(&mut self, content: &C, items: &[Item], group: &Group) -> Child {
-        let mut ids: SmallVec<[u32; 16]> = items[group.start..group.end].iter().map(Item::id).collect();
+        let mut ids: SmallVec<[u32; MOST]> = items[group.start..group.end].iter().map(Item::id).collect();
         ids.sort_unstable();
         content.store(&ids, &mut self.units)
     }
@@ -324,8 +331,7 @@ impl Cut {
 /// The cut with the least sum of measure times looks, of which each is at up to `at_once` items; `None` if all items are at one place.
 fn best_cut(items: &[Item], bounds: &Box32, at_once: usize) -> Option<Cut> {
     let looks = |count: usize| count.div_ceil(at_once) as f32;
-    let has_area = bounds.area() > 0.0;
-    let measure = |b: &Box32| if has_area { b.area() } else { b.girth() };
+    let measure = bounds.measure();
     let places = items.iter().fold(Box32::EMPTY, |mut b, item| {
         let middle = item.bounds.middle();
         b.add(&Box32 { lo: middle, hi: middle });

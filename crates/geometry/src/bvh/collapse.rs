@@ -24,8 +24,7 @@ struct Cut {
 impl Cuts {
     /// The cuts of `all`, which are the `items`.
     pub(super) fn of<C: Content>(content: &C, items: &mut [Item], all: Group) -> Self {
-        let has_area = all.bounds.area() > 0.0;
-        let measure = |b: &Box32| if has_area { b.area() } else { b.girth() };
+        let measure = all.bounds.measure();
         let mut cuts = Self { cuts: Vec::new() };
         cuts.add(content, items, all, 1, &measure);
         cuts

@@ -7,7 +7,7 @@ use super::prism::Prism;
 
 /// The points of a leaf, as sheared for a query: two coordinates across and one along.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Sheared {
+pub(super) struct ShearedPoints {
     pub(super) coordinates: [[f64; MOST]; 3],
 }
 
@@ -33,7 +33,7 @@ macro_rules! questions {
         /// Shears the points of a leaf; returns a bit for each face that is not certain to be off the prism.
         #[inline]
         $(#[$feature])?
-        pub(in super::super) fn screen(leaf: &[Unit], prism: &Prism, sheared: &mut Sheared) -> u32 {
+        pub(in super::super) fn screen(leaf: &[Unit], prism: &Prism, sheared: &mut ShearedPoints) -> u32 {
             let Some((masks, points)) = leaf.split_first_chunk::<MASK_UNITS>() else { return 0 };
             let beyond = match prism.shear.axis {
                 0 => beyond::<0>(points, prism, sheared),
@@ -51,7 +51,7 @@ macro_rules! questions {
         /// For each side of the prism a bit for each point that is beyond it, for certain.
         #[inline]
         $(#[$feature])?
-        fn beyond<const AXIS: usize>(points: &[Unit], prism: &Prism, sheared: &mut Sheared) -> [u32; 6] {
+        fn beyond<const AXIS: usize>(points: &[Unit], prism: &Prism, sheared: &mut ShearedPoints) -> [u32; 6] {
             let [next, last, along] = &mut sheared.coordinates;
             let mut beyond = [0; 6];
             let Some(points) = points.first_chunk::<{ MOST / 2 * PAIR_UNITS }>() else { return beyond };
@@ -60,7 +60,7 @@ macro_rules! questions {
             for ((k, pairs), ((next, last), along)) in quads.zip(stores) {
                 let from = |i: usize| sub_f64(load_f64(pairs[i], pairs[PAIR_UNITS + i]), all_f64(prism.origin(i, AXIS)));
                 let z = from(AXIS);
-                let across = |i: usize| sub_f64(from((AXIS + 1 + i) % 3), mul_f64(all_f64(prism.slopes[i]), z));
+                let across = |i: usize| sub_f64(from((AXIS + 1 + i) % 3), mul_f64(all_f64(prism.shear.slopes[i]), z));
                 let seen = [across(0), across(1), z];
                 for i in 0..3 {
                     beyond[2 * i] |= below_f64(seen[i], all_f64(prism.least[i])) << (4 * k);

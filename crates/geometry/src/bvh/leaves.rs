@@ -2,7 +2,7 @@
 //! miss are found all at once.
 
 use super::Child;
-use super::lanes::Sheared;
+use super::lanes::ShearedPoints;
 use super::prism::Prism;
 use crate::bounds::Aabb;
 use bytemuck::cast;
@@ -191,7 +191,7 @@ pub(crate) struct Seen<'a> {
 /// The corners of a face that a query may meet.
 pub(crate) struct SeenCorners<'a> {
     points: &'a [Unit],
-    sheared: &'a Sheared,
+    sheared: &'a ShearedPoints,
     /// The places of the corners among the points, ascending.
     places: [usize; 3],
     /// Which of these is the first corner of the face, which the next.
@@ -222,7 +222,7 @@ impl SeenCorners<'_> {
 /// What a query shows of the leaves it comes to.
 pub(super) trait Show {
     /// Shows a leaf, whose faces `screen` may leave out; returns the least that came back.
-    fn show(&mut self, leaf: Child, screen: impl FnOnce(&[Unit], &Prism, &mut Sheared) -> u32) -> f64;
+    fn show(&mut self, leaf: Child, screen: impl FnOnce(&[Unit], &Prism, &mut ShearedPoints) -> u32) -> f64;
 }
 
 /// Shows all items of a leaf.
@@ -233,7 +233,7 @@ pub(super) struct ShowBoxes<'a, H> {
 
 impl<H: FnMut(Seen<'_>) -> f64> Show for ShowBoxes<'_, H> {
     #[inline(always)] // for the registers of the caller
-    fn show(&mut self, leaf: Child, _: impl FnOnce(&[Unit], &Prism, &mut Sheared) -> u32) -> f64 {
+    fn show(&mut self, leaf: Child, _: impl FnOnce(&[Unit], &Prism, &mut ShearedPoints) -> u32) -> f64 {
         self.items[leaf.range()].iter().fold(f64::INFINITY, |limit, &item| {
             let s = (self.hit)(Seen { item, corners: None });
             if s < limit { s } else { limit }
@@ -245,13 +245,13 @@ impl<H: FnMut(Seen<'_>) -> f64> Show for ShowBoxes<'_, H> {
 pub(super) struct ShowFaces<'a, H> {
     pub(super) units: &'a [Unit],
     pub(super) prism: Prism,
-    pub(super) sheared: Sheared,
+    pub(super) sheared: ShearedPoints,
     pub(super) hit: H,
 }
 
 impl<H: FnMut(Seen<'_>) -> f64> Show for ShowFaces<'_, H> {
     #[inline(always)] // for the registers of the caller
-    fn show(&mut self, leaf: Child, screen: impl FnOnce(&[Unit], &Prism, &mut Sheared) -> u32) -> f64 {
+    fn show(&mut self, leaf: Child, screen: impl FnOnce(&[Unit], &Prism, &mut ShearedPoints) -> u32) -> f64 {
         let Some((before, rest)) = self.units.split_at_checked(leaf.range().start) else { return f64::INFINITY };
         let Some(own) = rest.get(..MASK_UNITS + MOST / 2 * PAIR_UNITS) else { return f64::INFINITY };
         let mut met = screen(own, &self.prism, &mut self.sheared);

@@ -8,9 +8,8 @@ use crate::shear::Shear;
 /// A box in sheared coordinates that holds all that a query can reach, with room for the rounding of the coordinates that are held against it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Prism {
+    /// The shear, of slope 0 where it has no direction.
     pub(super) shear: Shear,
-    /// The slopes to shear by: those of `shear`, or 0 where it has none.
-    pub(super) slopes: [f64; 2],
     /// The sides of the box, across and along.
     pub(super) least: [f64; 3],
     pub(super) most: [f64; 3],
@@ -34,8 +33,7 @@ impl Prism {
         let ([u, v], w) = (slopes.map(wide), radius + bound);
         let ends = [least(shear.length, 0.0), largest(shear.length, 0.0)].map(|end| end * (1.0 + gamma(4)));
         let prism = Self {
-            shear: *shear,
-            slopes,
+            shear: Shear { slopes, ..*shear },
             least: [-u, -v, ends[0] - w],
             most: [u, v, ends[1] + w],
             turn_bound: sheared_bound(size, size),
@@ -57,7 +55,6 @@ impl Prism {
     pub(super) fn of_box(query: &Aabb) -> Self {
         Self {
             shear: Shear { axis: 2, origin: [0.0; 3], slopes: [0.0; 2], length: 0.0 },
-            slopes: [0.0; 2],
             least: query.min().coords.into(),
             most: query.max().coords.into(),
             turn_bound: 0.0,

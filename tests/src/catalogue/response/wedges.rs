@@ -186,27 +186,28 @@ fn narrow_corridor() -> Figure {
     let mut check = Check::new();
     let (r, far) = (0.25, 8.0);
     let mut narrowest = f64::INFINITY;
-    for (axis, k) in (0..3).flat_map(|axis| (-48..=2).map(move |k| (axis, k))) {
+    // From half of the ball to less than rounding, and nothing.
+    let lacks: Vec<f64> = (2..=48).map(|k| 0.5f64.powi(k)).chain([0.0]).collect();
+    for (axis, (k, lack)) in (0..3).flat_map(|axis| lacks.iter().enumerate().map(move |lack| (axis, lack))) {
         let unit = |i: usize| Vector3::from_fn(|j, _| f64::from(u8::from(i % 3 == j)));
         // A third direction, so that no normal is an axis.
         let normal = (unit(axis) + unit(axis + 1) * 0.5).normalize();
-        let width = 2.0 * r - 2f64.powi(k.min(-2)) * f64::from(u8::from(k < 2));
+        let width = 2.0 * r - lack;
         let place = |share: f64| Point3::from(unit(axis + 2) * far + normal * (share * width));
         let stage = Stage::new(1.0)
             .plane("left", smooth(0.5), place(0.0), normal)
-            .plane("right", smooth(0.5), place(1.0), if k % 2 == 0 { -normal } else { normal })
+            .plane("right", smooth(0.5), place(1.0), if k.is_multiple_of(2) { -normal } else { normal })
             .ball(place(0.5), [0.25, 0.5, 1.0], r);
         let refused = Plan::new(&stage.0);
-        let gap = 2.0 * r - width;
         // 64 u of the largest coordinate count as contact; what is beyond twice that is refused.
         let named =
             matches!(&refused, Err(SceneError::NoRoom { ball: 0, surfaces, .. }) if *surfaces == ["left", "right"]);
-        if gap > 128.0 * U * (far + 1.0) {
+        if *lack > 128.0 * U * (far + 1.0) {
             check.that(named, || format!("{width} m: {refused:?}"));
-            narrowest = narrowest.min(gap);
+            narrowest = narrowest.min(*lack);
         } else {
             check.that(refused.is_ok() || named, || format!("{width} m: {refused:?}"));
-            check.that(gap > 0.0 || refused.is_ok(), || format!("{width} m: {refused:?}"));
+            check.that(*lack > 0.0 || refused.is_ok(), || format!("{width} m: {refused:?}"));
         }
     }
     let one = Stage::new(1.0).floor(smooth(0.5)).ball([0.0, 0.0, 0.5 * r], [0.0; 3], r);

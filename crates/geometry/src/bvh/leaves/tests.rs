@@ -148,7 +148,7 @@ proptest! {
                 until + 1.0 / met.len() as f64
             };
             let prism = Prism::around(&segment, &Shear::new(&a, &b), &tree.bounds);
-            let mut leaves = ShowFaces { units, prism, sheared: lanes::Sheared::default(), hit };
+            let mut leaves = ShowFaces { units, prism, sheared: lanes::ShearedPoints::default(), hit };
             let walk = if narrow { walk_narrow } else { walk };
             let visited = walk(&tree.nodes, &local, &mut stack, &mut leaves);
             (met, visited)
