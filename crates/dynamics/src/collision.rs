@@ -62,6 +62,11 @@ fn is_behind(n: &Vector3<f64>, state: &State, a: &Vector3<f64>) -> bool {
     (if along { -n.dot(a) } else { heading }) < 0.0
 }
 
+/// The contact with `site` of `surface`, at `normal`, of a ball that moves with `velocity`.
+fn touched(surface: usize, site: Option<Site>, normal: Vector3<f64>, velocity: &Vector3<f64>) -> Contact {
+    Contact { surface, site, normal, rate: normal.dot(velocity), lasting: false }
+}
+
 /// One ball among the surfaces of a plan.
 #[derive(Debug, Clone)]
 pub struct Obstacles<'a> {
@@ -138,17 +143,33 @@ impl<'a> Obstacles<'a> {
         returns: &Returns,
         counters: &mut Counters,
     ) -> Option<Hit> {
-        // Ties go by name, so that the order of the surfaces does not matter.
+        let hit = self.earliest_plane(step, contacts, returns, counters);
+        if self.plan.meshes.is_empty() {
+            return hit;
+        }
+        self.earliest_face(hit, step, contacts, returns, counters)
+    }
+
+    /// Whether what is found at `f` on `surface` comes before `than`: ties go by name, so that the order of the surfaces does not matter.
+    fn is_earlier(&self, f: f64, surface: usize, than: &Option<Hit>) -> bool {
         let rank = |surface: usize| self.plan.surfaces[surface].rank;
-        let earlier = |f: f64, surface: usize, than: &Option<Hit>| {
-            than.is_none_or(|hit| f < hit.f || (f == hit.f && rank(surface) < rank(hit.surface)))
-        };
+        than.is_none_or(|hit| f < hit.f || (f == hit.f && rank(surface) < rank(hit.surface)))
+    }
+
+    /// The earliest collision of the step with a plane.
+    fn earliest_plane(
+        &self,
+        step: &Step,
+        contacts: &[Contact],
+        returns: &Returns,
+        counters: &mut Counters,
+    ) -> Option<Hit> {
         let mut earliest: Option<Hit> = None;
         for facing in &self.planes {
             let surface = facing.surface;
-            let known = contacts.iter().position(|c| c.surface == surface);
+            let known = contacts.iter().zip(returns).find(|(c, _)| c.surface == surface);
             let entry = match known {
-                Some(i) => returns[i],
+                Some((_, back)) => *back,
                 None => {
                     counters.clearances += 1;
                     let gap = facing.clearance(&step.path.start(), self.radius);
@@ -156,16 +177,25 @@ impl<'a> Obstacles<'a> {
                 }
             };
             if let Entry::At { f, rate } = entry
-                && earlier(f, surface, &earliest)
+                && self.is_earlier(f, surface, &earliest)
             {
                 earliest = Some(Hit { f, surface, face: None, rate: Some(rate) });
             }
         }
-        if self.plan.meshes.is_empty() {
-            return earliest;
-        }
+        earliest
+    }
+
+    /// The earliest collision of the step, with `earliest` or with a face before that.
+    fn earliest_face(
+        &mut self,
+        mut earliest: Option<Hit>,
+        step: &Step,
+        contacts: &[Contact],
+        returns: &Returns,
+        counters: &mut Counters,
+    ) -> Option<Hit> {
         let mut holds = self.holds(step, contacts, returns);
-        for ((surface, mesh), around) in self.plan.meshes.iter().zip(&mut self.around) {
+        for (i, (surface, mesh)) in self.plan.meshes.iter().enumerate() {
             for (contact, hold) in contacts.iter().zip(&mut holds) {
                 hold.face = contact.site.filter(|_| contact.surface == *surface).map(|site| site.face());
             }
@@ -178,11 +208,11 @@ impl<'a> Obstacles<'a> {
                 on_it.map(|(contact, back)| Departure::new(step, contact, back, mesh, ball.radius)).collect();
             let free_until =
                 |face: u32| departures.iter().map(|departure| departure.free_until(face, &asked)).fold(0.0, f64::max);
-            let found = mesh.first_contact_around(&ball, to, free_until, around, &mut work);
+            let found = mesh.first_contact_around(&ball, to, free_until, &mut self.around[i], &mut work);
             counters.add(&work);
             counters.clearances += asked.get();
             if let Some(found) = found
-                && earlier(found.f, *surface, &earliest)
+                && self.is_earlier(found.f, *surface, &earliest)
             {
                 earliest = Some(Hit { f: found.f, surface: *surface, face: Some(found.face), rate: None });
             }
@@ -202,10 +232,7 @@ impl<'a> Obstacles<'a> {
     pub fn seen(&self, hit: &Hit, position: &Point3<f64>, velocity: &Vector3<f64>) -> Option<Contact> {
         let (face, mesh) = hit.face.zip(self.mesh(hit.surface))?;
         let touch = mesh.nearest_of(face, position)?;
-        let rate = touch.normal.dot(velocity);
-        let contact =
-            Contact { surface: hit.surface, site: Some(touch.site), normal: touch.normal, rate, lasting: false };
-        (rate < 0.0).then_some(contact)
+        Some(touched(hit.surface, Some(touch.site), touch.normal, velocity)).filter(|contact| contact.rate < 0.0)
     }
 
     /// The contacts of a ball at `position` with `velocity`, to within `tolerance` (m), each with its rate n.v. If that is where it is at
@@ -220,19 +247,31 @@ impl<'a> Obstacles<'a> {
         f: Option<f64>,
         counters: &mut Counters,
     ) -> Contacts {
-        let contact = |surface, site, normal: Vector3<f64>| Contact {
-            surface,
-            site,
-            normal,
-            rate: normal.dot(velocity),
-            lasting: false,
-        };
         let mut all = Contacts::new();
         for facing in &self.planes {
             if facing.clearance(position, self.radius) <= tolerance {
-                all.push(contact(facing.surface, None, facing.normal));
+                all.push(touched(facing.surface, None, facing.normal, velocity));
             }
         }
+        if !self.plan.meshes.is_empty() {
+            self.touch_faces(&mut all, position, velocity, tolerance, f, counters);
+        }
+        if all.len() > 1 {
+            self.merge(&mut all, tolerance);
+        }
+        all
+    }
+
+    /// Adds what a ball at `position` with `velocity` touches of the meshes, as [`touching`](Self::touching) is asked for it.
+    fn touch_faces(
+        &self,
+        all: &mut Contacts,
+        position: &Point3<f64>,
+        velocity: &Vector3<f64>,
+        tolerance: f64,
+        f: Option<f64>,
+        counters: &mut Counters,
+    ) {
         for ((surface, mesh), around) in self.plan.meshes.iter().zip(&self.around) {
             let mut work = Work::default();
             let touches = match f {
@@ -240,14 +279,10 @@ impl<'a> Obstacles<'a> {
                 None => mesh.touches(position, velocity, self.mesh_radius, tolerance, &mut work),
             };
             for touch in touches {
-                all.push(contact(*surface, Some(touch.site), touch.normal));
+                all.push(touched(*surface, Some(touch.site), touch.normal, velocity));
             }
             counters.add(&work);
         }
-        if all.len() > 1 {
-            self.merge(&mut all, tolerance);
-        }
-        all
     }
 
     /// Of contacts whose normals are one, that which closes fastest; then in order.

@@ -115,11 +115,13 @@ impl Step {
     }
 
     /// The state at the end of the step.
+    #[inline]
     pub fn end(&self) -> State {
         self.at(self.to)
     }
 
     /// Whether the path, the velocity and their reach over the whole step are finite: what is no number in any of their terms is none at the end.
+    #[inline]
     pub fn is_finite(&self) -> bool {
         let State { position, velocity } = self.end();
         // A maximum passes over what is no number; a sum does not, not even of infinities that differ in sign.
