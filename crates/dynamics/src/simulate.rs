@@ -29,6 +29,7 @@ use crate::tolerance::{
 };
 use carom_geometry::bounds::amax;
 use nalgebra::Vector3;
+use settling::Lowness;
 use spin::Slip;
 
 /// Simulates one ball of `plan` to the end and shows it to `observer`.
@@ -90,6 +91,7 @@ pub fn simulate(plan: &Plan, ball: &Ball, observer: &mut impl Observer) -> Outco
         moved: 0.0,
         bound: None,
         low_hops: 0,
+        lowness: Lowness::under(a, &plan.rest),
         halvings: 0,
         events: 0,
         ending: None,
@@ -161,6 +163,8 @@ struct Walk<'a, O> {
     bound: Option<Bound>,
     /// Impacts in a row after which no hop was high.
     low_hops: u32,
+    /// Which hops are.
+    lowness: Lowness,
     /// How often the timestep is halved because the path closes where the ball does not.
     halvings: u32,
     events: u64,

@@ -121,29 +121,21 @@ impl<O: Observer> Walk<'_, O> {
         let tolerance = self.touch_tolerance(step.path.reach(hit.f)).max(self.obstacles.doubt(step, &hit));
         let before = std::mem::take(&mut self.contacts);
         let State { position, velocity } = self.state;
-        // What slides is put back onto its surface, and is then elsewhere.
-        let f = (position == step.path.at(hit.f)).then_some(hit.f);
+        // What slides is put back onto its surface, and is then elsewhere; and only of meshes it matters where.
+        let f = (!self.plan.meshes.is_empty() && position == step.path.at(hit.f)).then_some(hit.f);
         let mut contacts = self.obstacles.touching(&position, &velocity, tolerance, f, &mut self.counters);
         for contact in &mut contacts {
             self.correct(contact, tolerance);
             contact.rate = self.rate(step, hit, contact, &before, returns);
         }
         if self.standstill > 0 && contacts.iter().all(|c| c.rate >= 0.0) {
-            // No time passes, and what is nearest to the ball is left, but by less than rounding: the search has seen its neighbour, to which the ball
-            // comes nearer (the vertex at the end of an edge, the face beyond a shallow fold). Either is touched; the one that closes is answered, or
-            // it would be found for ever.
-            let place = |c: &Contact| (c.surface, c.site);
-            let seen = self.obstacles.seen(&hit, &self.state.position, &velocity);
-            if let Some(seen) = seen.filter(|seen| contacts.iter().all(|c| place(c) != place(seen)))
-                && contacts.len() < MAX_CONTACTS
-            {
-                contacts.push(seen);
-                contacts.sort_by(|a, b| self.obstacles.order(a, b));
-            }
+            self.add_seen(&mut contacts, &hit, &velocity);
         }
-        self.bound = self.bound(step, &hit, tolerance, &contacts);
+        if self.observer.looks_at_events() {
+            self.bound = self.bound(step, &hit, tolerance, &contacts);
+        }
         let collapses = self.collapses(&mut contacts, tolerance);
-        let carrier = before.iter().find(|b| b.lasting).copied();
+        let carrier = before.iter().find(|b| b.lasting);
         let mut closing = Closing::default();
         for (i, contact) in contacts.iter().enumerate().filter(|(_, c)| c.rate < 0.0) {
             if closing == Closing::default() && step.exact {
@@ -184,6 +176,21 @@ impl<O: Observer> Walk<'_, O> {
         }
     }
 
+    /// Where no time passes and all `contacts` are left, adds what the search that found `hit` has seen.
+    ///
+    /// What is nearest to the ball is left by less than rounding: the search has seen its neighbour, to which the ball comes nearer (the vertex at the end of an
+    /// edge, the face beyond a shallow fold). Either is touched; the one that closes is answered, or it would be found for ever.
+    fn add_seen(&self, contacts: &mut Contacts, hit: &Hit, velocity: &Vector3<f64>) {
+        let place = |c: &Contact| (c.surface, c.site);
+        let seen = self.obstacles.seen(hit, &self.state.position, velocity);
+        if let Some(seen) = seen.filter(|seen| contacts.iter().all(|c| place(c) != place(seen)))
+            && contacts.len() < MAX_CONTACTS
+        {
+            contacts.push(seen);
+            contacts.sort_by(|a, b| self.obstacles.order(a, b));
+        }
+    }
+
     /// How far the time and the place of `hit` may be off, with contact found to `tolerance` (m); none if nothing closes there.
     fn bound(&self, step: &Step, hit: &Hit, tolerance: f64, contacts: &[Contact]) -> Option<Bound> {
         let doubt = tolerance.max(touch_distance(self.plan.farthest, step.path.reach(hit.f)));
@@ -208,7 +215,6 @@ impl<O: Observer> Walk<'_, O> {
     /// Whether contacts that lose energy have answered each other without time passing for so long that there is no end to it; then
     /// `contacts` are all that took part.
     fn collapses(&mut self, contacts: &mut Contacts, tolerance: f64) -> bool {
-        let radius = self.plan.radius_at_meshes(self.forces.ball);
         if self.standstill == 0 {
             self.answered.clear();
         }
@@ -218,10 +224,17 @@ impl<O: Observer> Walk<'_, O> {
                 self.answered.push(*c);
             }
         }
+        self.standstill >= COLLAPSE_AFTER && self.collapses_at_last(contacts, tolerance)
+    }
+
+    /// The same after so long.
+    fn collapses_at_last(&self, contacts: &mut Contacts, tolerance: f64) -> bool {
         let loses = |c: &Contact| self.surfaces[c.surface].material.restitution.coefficient() < 1.0;
-        if self.standstill < COLLAPSE_AFTER || !self.answered.iter().any(loses) {
+        if !self.answered.iter().any(loses) {
             return false;
         }
+        let radius = self.plan.radius_at_meshes(self.forces.ball);
+        let place = |c: &Contact| (c.surface, c.site);
         for a in &self.answered {
             // Of what two faces of one plane answered, once.
             let apart = |c: &Contact| (a.normal - c.normal).norm_squared() > merge_angle_squared(tolerance, radius);

@@ -50,12 +50,12 @@ impl<O: Observer> Walk<'_, O> {
     }
 
     /// Takes off from `left`, which carried it so far, if anything did.
-    pub(super) fn set_flying(&mut self, left: Option<Contact>) {
+    pub(super) fn set_flying(&mut self, left: Option<&Contact>) {
         self.motion = Motion::Flying;
         self.settling = None;
         self.rolls = false;
         if let Some(contact) = left {
-            self.tell(EventKind::Leave, &contact, self.state.velocity);
+            self.tell(EventKind::Leave, contact, self.state.velocity);
         }
         for contact in &mut self.contacts {
             contact.lasting = false;
@@ -123,7 +123,7 @@ impl<O: Observer> Walk<'_, O> {
         let flat = carriers.iter().all(|c| c.bend == Bend::Flat);
         let lifted = balance.loads.count() == 0 && (flat || is_lifted(&a, &carriers, &self.state));
         if lifted && self.settling.is_none() {
-            self.set_flying(carriers.first().map(|c| c.contact));
+            self.set_flying(carriers.first().map(|c| &c.contact));
             return;
         }
         if self.drop_unloaded(&a, &carriers, &balance) {
@@ -194,7 +194,10 @@ impl<O: Observer> Walk<'_, O> {
                     self.end_settling();
                 }
             }
-            (None, None) if off.is_some() => self.set_flying(self.contacts.iter().find(|c| c.lasting).copied()),
+            (None, None) if off.is_some() => {
+                let left = self.contacts.iter().find(|c| c.lasting).copied();
+                self.set_flying(left.as_ref());
+            }
             (None, None) if stops => self.state.velocity = Vector3::zeros(),
             (None, None) => {}
         }
