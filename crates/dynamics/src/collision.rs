@@ -52,6 +52,15 @@ impl FacingPlane {
     fn clearance(&self, x: &Point3<f64>, radius: f64) -> f64 {
         self.normal.dot(&(x - self.point)) - radius
     }
+
+    /// Where `step` enters it first, for a ball of `radius`, before `to` or at it; of what comes later, only that there is nothing before.
+    #[inline(never)]
+    fn entry(&self, step: &Step, radius: f64, to: f64) -> Entry {
+        let gap = self.clearance(&step.path.start(), radius);
+        let clearance = step.path.clearance(gap, &self.normal);
+        // Most planes are too far away, or the ball flies away from them.
+        if gap > 2.0 * clearance.fall(to) { Entry::Never } else { clearance.first_entry(0.0, step.to) }
+    }
 }
 
 /// Whether a centre that starts on a plane of normal `n`, with acceleration `a`, is behind it: on the side it moves to or, where it moves along the plane
@@ -63,7 +72,7 @@ fn is_behind(n: &Vector3<f64>, state: &State, a: &Vector3<f64>) -> bool {
 }
 
 /// The contact with `site` of `surface`, at `normal`, of a ball that moves with `velocity`.
-fn touched(surface: usize, site: Option<Site>, normal: Vector3<f64>, velocity: &Vector3<f64>) -> Contact {
+fn contact_with(surface: usize, site: Option<Site>, normal: Vector3<f64>, velocity: &Vector3<f64>) -> Contact {
     Contact { surface, site, normal, rate: normal.dot(velocity), lasting: false }
 }
 
@@ -172,8 +181,7 @@ impl<'a> Obstacles<'a> {
                 Some((_, back)) => *back,
                 None => {
                     counters.clearances += 1;
-                    let gap = facing.clearance(&step.path.start(), self.radius);
-                    step.path.clearance(gap, &facing.normal).first_entry(0.0, step.to)
+                    facing.entry(step, self.radius, earliest.map_or(step.to, |hit| hit.f))
                 }
             };
             if let Entry::At { f, rate } = entry
@@ -186,6 +194,7 @@ impl<'a> Obstacles<'a> {
     }
 
     /// The earliest collision of the step, with `earliest` or with a face before that.
+    #[inline(never)]
     fn earliest_face(
         &mut self,
         mut earliest: Option<Hit>,
@@ -222,7 +231,7 @@ impl<'a> Obstacles<'a> {
 
     /// How far from touching the ball may be at `hit`, by the rounding of the search that found it: it grows with the face.
     pub fn doubt(&self, step: &Step, hit: &Hit) -> f64 {
-        let Some((face, mesh)) = hit.face.zip(self.mesh(hit.surface)) else { return 0.0 };
+        let Some((face, mesh)) = hit.face.and_then(|face| Some((face, self.mesh(hit.surface)?))) else { return 0.0 };
         let corners = mesh.triangle(face).map(|v| (v - step.path.start()).amax());
         let size = corners.into_iter().fold(self.mesh_radius, f64::max);
         contact_doubt(size + step.path.reach(hit.f))
@@ -232,10 +241,10 @@ impl<'a> Obstacles<'a> {
     pub fn seen(&self, hit: &Hit, position: &Point3<f64>, velocity: &Vector3<f64>) -> Option<Contact> {
         let (face, mesh) = hit.face.zip(self.mesh(hit.surface))?;
         let touch = mesh.nearest_of(face, position)?;
-        Some(touched(hit.surface, Some(touch.site), touch.normal, velocity)).filter(|contact| contact.rate < 0.0)
+        Some(contact_with(hit.surface, Some(touch.site), touch.normal, velocity)).filter(|contact| contact.rate < 0.0)
     }
 
-    /// The contacts of a ball at `position` with `velocity`, to within `tolerance` (m), each with its rate n.v. If that is where it is at
+    /// Makes `touched` the contacts of a ball at `position` with `velocity`, to within `tolerance` (m), each with its rate n.v. If that is where it is at
     /// `f` of the step that the [`earliest`](Self::earliest) hit was asked for, they need not be looked for again.
     ///
     /// Of contacts whose normals are one to within what the tolerance makes of them, the one that closes fastest stays.
@@ -245,31 +254,32 @@ impl<'a> Obstacles<'a> {
         velocity: &Vector3<f64>,
         tolerance: f64,
         f: Option<f64>,
+        touched: &mut Contacts,
         counters: &mut Counters,
-    ) -> Contacts {
-        let mut all = Contacts::new();
+    ) {
+        touched.clear();
         for facing in &self.planes {
             if facing.clearance(position, self.radius) <= tolerance {
-                all.push(touched(facing.surface, None, facing.normal, velocity));
+                touched.push(contact_with(facing.surface, None, facing.normal, velocity));
             }
         }
         if !self.plan.meshes.is_empty() {
-            self.touch_faces(&mut all, position, velocity, tolerance, f, counters);
+            self.touch_faces(position, velocity, tolerance, f, touched, counters);
         }
-        if all.len() > 1 {
-            self.merge(&mut all, tolerance);
+        if touched.len() > 1 {
+            self.merge(touched, tolerance);
         }
-        all
     }
 
     /// Adds what a ball at `position` with `velocity` touches of the meshes, as [`touching`](Self::touching) is asked for it.
+    #[inline(never)]
     fn touch_faces(
         &self,
-        all: &mut Contacts,
         position: &Point3<f64>,
         velocity: &Vector3<f64>,
         tolerance: f64,
         f: Option<f64>,
+        touched: &mut Contacts,
         counters: &mut Counters,
     ) {
         for ((surface, mesh), around) in self.plan.meshes.iter().zip(&self.around) {
@@ -279,13 +289,14 @@ impl<'a> Obstacles<'a> {
                 None => mesh.touches(position, velocity, self.mesh_radius, tolerance, &mut work),
             };
             for touch in touches {
-                all.push(touched(*surface, Some(touch.site), touch.normal, velocity));
+                touched.push(contact_with(*surface, Some(touch.site), touch.normal, velocity));
             }
             counters.add(&work);
         }
     }
 
     /// Of contacts whose normals are one, that which closes fastest; then in order.
+    #[inline(never)]
     fn merge(&self, contacts: &mut Contacts, tolerance: f64) {
         contacts.sort_by(|a, b| a.rate.total_cmp(&b.rate).then_with(|| self.order(a, b)));
         let mut kept = 0;
@@ -317,7 +328,8 @@ impl<'a> Obstacles<'a> {
         counters: &mut Counters,
     ) -> Point3<f64> {
         let State { mut position, velocity } = *state;
-        let touched = self.touching(&position, &velocity, tolerance, None, counters);
+        let mut touched = Contacts::new();
+        self.touching(&position, &velocity, tolerance, None, &mut touched, counters);
         for contact in touched.iter().filter(|c| c.site.is_some() && self.bend(c) == Bend::Flat) {
             let Some(gap) = self.gap(contact, &position) else { continue };
             // Of a face, the height is never below 0: it is seen from where the point is.
@@ -337,15 +349,19 @@ impl<'a> Obstacles<'a> {
     /// The distance that is left between the ball at `position` and what it is in contact with.
     pub fn gap(&self, contact: &Contact, position: &Point3<f64>) -> Option<f64> {
         match contact.site {
-            Some(site) => {
-                let (foot, _) = self.mesh(contact.surface)?.foot(site, position)?;
-                Some((position - foot).norm() - self.mesh_radius)
-            }
+            Some(site) => self.gap_at(contact.surface, site, position),
             None => {
                 let facing = self.planes.iter().find(|p| p.surface == contact.surface)?;
                 Some(facing.clearance(position, self.radius))
             }
         }
+    }
+
+    /// The same for `site` of the mesh that `surface` is.
+    #[inline(never)]
+    fn gap_at(&self, surface: usize, site: Site, position: &Point3<f64>) -> Option<f64> {
+        let (foot, _) = self.mesh(surface)?.foot(site, position)?;
+        Some((position - foot).norm() - self.mesh_radius)
     }
 
     /// Whether `next` continues the plane of `contact` to the bit: moving on it, nothing changes there.

@@ -94,6 +94,14 @@ impl Clearance {
         (12.0 * c4 * f + 6.0 * c3) * f + 2.0 * c2
     }
 
+    /// How far it may fall over [0, `to`], `to` >= 0: never more, but for rounding.
+    #[inline]
+    pub fn fall(&self, to: f64) -> f64 {
+        let down = |c: f64| if c < 0.0 { -c } else { 0.0 };
+        let [_, c1, c2, c3, c4] = self.c;
+        (((down(c4) * to + down(c3)) * to + down(c2)) * to + down(c1)) * to
+    }
+
     /// The first f in [`from`, `to`] where the clearance is <= 0 and falling.
     ///
     /// Lines and parabolas are solved in closed form, to a few units of roundoff; higher degrees to the last bit of f that
@@ -241,6 +249,18 @@ mod tests {
         assert_eq!(entry([0.0, 3.0, -4.0, 0.0, 0.0], 0.0, 1.0), Some((0.75, -3.0)));
         // Overlapping, separating, but turning before it is free: there.
         assert_eq!(entry([-1.0, 1.0, -1.0, 0.0, 0.0], 0.0, 1.0), Some((0.5, 0.0)));
+    }
+
+    #[test]
+    fn no_clearance_falls_farther_than_it_may() {
+        for c in [[5.0, -1.0, 0.5, -2.0, 0.25], [0.0, 1.0, -3.0, 1.0, -1.0], [1.0, 2.0, 3.0, 4.0, 5.0]] {
+            let clearance = Clearance::new(c);
+            for f in (0..=16).map(|i| f64::from(i) / 16.0) {
+                assert!(c[0] - clearance.at(f) <= clearance.fall(f), "{c:?} at {f}");
+            }
+        }
+        assert_eq!(Clearance::new([1.0, -2.0, -3.0, 4.0, 5.0]).fall(0.5), 1.75);
+        assert_eq!(Clearance::new([1.0, 2.0, 3.0, 4.0, 5.0]).fall(1.0), 0.0);
     }
 
     #[test]

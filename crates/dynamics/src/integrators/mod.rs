@@ -107,9 +107,9 @@ impl Step {
     /// Position and velocity at `f`.
     #[inline]
     pub fn at(&self, f: f64) -> State {
-        let [v0, v1, v2, v3, v4] = self.velocity;
+        let [v0, v1, v2, v3, v4] = &self.velocity;
         // The velocity has no terms beyond those of the path.
-        let further = if self.path.terms().len() <= 2 { v2 } else { (v4 * f + v3) * f + v2 };
+        let further = if self.path.degree() <= 2 { *v2 } else { (v4 * f + v3) * f + v2 };
         let velocity = (further * f + v1) * f + v0;
         State { position: self.path.at(f), velocity }
     }
@@ -125,7 +125,7 @@ impl Step {
     pub fn is_finite(&self) -> bool {
         let State { position, velocity } = self.end();
         // A maximum passes over what is no number; a sum does not, not even of infinities that differ in sign.
-        (position.coords.sum() + velocity.sum() + self.path.reach(self.to) + self.seconds).is_finite()
+        ((position.coords + velocity).sum() + self.path.reach(self.to) + self.seconds).is_finite()
     }
 
     /// The time from the start to `f`, in s.

@@ -54,11 +54,10 @@ impl<O: Observer> Walk<'_, O> {
         self.motion = Motion::Flying;
         self.settling = None;
         self.rolls = false;
+        // What carried it is what lasted, if anything did.
         if let Some(contact) = left {
             self.tell(EventKind::Leave, contact, self.state.velocity);
-        }
-        for contact in &mut self.contacts {
-            contact.lasting = false;
+            self.contacts.iter_mut().for_each(|contact| contact.lasting = false);
         }
     }
 
@@ -157,8 +156,8 @@ impl<O: Observer> Walk<'_, O> {
         step.to = off.unwrap_or(step.to);
         let mut crossings = Vec::new();
         let exit = self.exit(&step, &mut crossings);
-        let returns = self.obstacles.returns(&step, &self.contacts, &mut self.counters);
-        let hit = self.obstacles.earliest(&step, &self.contacts, &returns, &mut self.counters);
+        let returns = self.obstacles.returns(&step, self.contacts, &mut self.counters);
+        let hit = self.obstacles.earliest(&step, self.contacts, &returns, &mut self.counters);
         let hit = hit.filter(|hit| exit.is_none_or(|(f, ..)| hit.f < f));
         let to = hit.map(|hit| hit.f).or(exit.map(|(f, ..)| f)).unwrap_or(step.to);
         let whole = hit.is_none() && exit.is_none() && off.is_none() && !stops && step.time(step.to) >= remaining;
@@ -345,7 +344,8 @@ impl<O: Observer> Walk<'_, O> {
         }
         let tolerance = self.touch_tolerance(0.0);
         let State { position, velocity } = self.state;
-        let touched = self.obstacles.touching(&position, &velocity, tolerance, None, &mut self.counters);
+        let mut touched = Contacts::new();
+        self.obstacles.touching(&position, &velocity, tolerance, None, &mut touched, &mut self.counters);
         let rounding = rate_rounding(velocity.norm());
         let rises = |c: &&Contact| c.surface == contact.surface && c.site != contact.site && c.rate < -rounding;
         touched.iter().find(rises).and_then(|c| Some((c.surface, c.site?.face())))
@@ -376,10 +376,11 @@ impl<O: Observer> Walk<'_, O> {
                 contact.normal = normal;
             }
         }
-        let lasting: Contacts = self.contacts.iter().filter(|c| c.lasting).copied().collect();
-        for contact in &lasting {
-            let slack = SLIDING_TOLERANCE * self.obstacles.radius_at(contact);
-            self.correct(contact, self.touch_tolerance(0.0).max(slack));
+        for i in 0..self.contacts.len() {
+            if self.contacts[i].lasting {
+                let slack = SLIDING_TOLERANCE * self.obstacles.radius_at(&self.contacts[i]);
+                self.correct(i, self.touch_tolerance(0.0).max(slack));
+            }
         }
         self.make_tangential();
     }

@@ -28,11 +28,9 @@ struct Hop {
     neutral: f64,
 }
 
-/// Which hops are low, under an acceleration that is the same for most flights of a ball.
+/// Which hops are low under an acceleration; for most balls it is always the same.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Lowness {
-    /// The acceleration in m/s^2.
-    a: Vector3<f64>,
     /// The speed in m/s of a hop that is low, however it is pressed.
     low: f64,
     /// A speed in m/s at which bouncing does not end, however it is pressed: what presses it is not more than all of the acceleration.
@@ -40,9 +38,10 @@ pub(super) struct Lowness {
 }
 
 impl Lowness {
-    pub(super) fn under(a: Vector3<f64>, rest: &RestThresholds) -> Self {
+    /// Under the acceleration `a` in m/s^2.
+    pub(super) fn under(a: &Vector3<f64>, rest: &RestThresholds) -> Self {
         let most = a.norm();
-        Self { a, low: rest.low_hop(most), fast: rest.at(2.0 * most).speed }
+        Self { low: rest.low_hop(most), fast: rest.at(2.0 * most).speed }
     }
 }
 
@@ -54,8 +53,8 @@ impl<O: Observer> Walk<'_, O> {
     /// weight alone would not press it into, and takes from what presses it into a third that it hops on.
     pub(super) fn settle(&mut self, left: Option<&Contact>) -> bool {
         let a = self.forces.acceleration(&self.state, &mut self.counters);
-        if self.lowness.a != a {
-            self.lowness = Lowness::under(a, &self.plan.rest);
+        if !self.forces.are_constant() {
+            self.lowness = Lowness::under(&a, &self.plan.rest);
         }
         self.count_low_hops();
         if self.bounces_on() {
@@ -67,6 +66,7 @@ impl<O: Observer> Walk<'_, O> {
     }
 
     /// Holds what the ball no longer bounces on; says whether that carries it.
+    #[inline(never)]
     fn hold(&mut self, a: &Vector3<f64>, left: Option<&Contact>) -> bool {
         let sliding = self.motion == Motion::Sliding;
         let carriers = self.carriers();
