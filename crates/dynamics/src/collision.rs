@@ -59,7 +59,7 @@ impl FacingPlane {
         let gap = self.clearance(&step.path.start(), radius);
         let clearance = step.path.clearance(gap, &self.normal);
         // Most planes are too far away, or the ball flies away from them.
-        if gap > 2.0 * clearance.fall(to) { Entry::Never } else { clearance.first_entry(0.0, step.to) }
+        if gap > -2.0 * clearance.fall(to) { Entry::Never } else { clearance.first_entry(0.0, step.to) }
     }
 }
 
@@ -145,6 +145,7 @@ impl<'a> Obstacles<'a> {
     }
 
     /// The earliest collision of the step: over all surfaces, the smallest f at which the clearance is <= 0 and falling.
+    #[inline(always)]
     pub fn earliest(
         &mut self,
         step: &Step,
@@ -153,10 +154,7 @@ impl<'a> Obstacles<'a> {
         counters: &mut Counters,
     ) -> Option<Hit> {
         let hit = self.earliest_plane(step, contacts, returns, counters);
-        if self.plan.meshes.is_empty() {
-            return hit;
-        }
-        self.earliest_face(hit, step, contacts, returns, counters)
+        if self.plan.meshes.is_empty() { hit } else { self.earliest_face(hit, step, contacts, returns, counters) }
     }
 
     /// Whether what is found at `f` on `surface` comes before `than`: ties go by name, so that the order of the surfaces does not matter.
@@ -166,6 +164,7 @@ impl<'a> Obstacles<'a> {
     }
 
     /// The earliest collision of the step with a plane.
+    #[inline(always)]
     fn earliest_plane(
         &self,
         step: &Step,

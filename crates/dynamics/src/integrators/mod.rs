@@ -125,7 +125,7 @@ impl Step {
     pub fn is_finite(&self) -> bool {
         let State { position, velocity } = self.end();
         // A maximum passes over what is no number; a sum does not, not even of infinities that differ in sign.
-        ((position.coords + velocity).sum() + self.path.reach(self.to) + self.seconds).is_finite()
+        (position.coords.sum() + velocity.sum() + self.path.reach(self.to) + self.seconds).is_finite()
     }
 
     /// The time from the start to `f`, in s.
