@@ -158,9 +158,9 @@ impl<'a> Obstacles<'a> {
     }
 
     /// Whether what is found at `f` on `surface` comes before `than`: ties go by name, so that the order of the surfaces does not matter.
-    fn is_earlier(&self, f: f64, surface: usize, than: &Option<Hit>) -> bool {
+    fn is_earlier(&self, f: f64, surface: usize, than: Option<(f64, usize)>) -> bool {
         let rank = |surface: usize| self.plan.surfaces[surface].rank;
-        than.is_none_or(|hit| f < hit.f || (f == hit.f && rank(surface) < rank(hit.surface)))
+        than.is_none_or(|(first, other)| f < first || (f == first && rank(surface) < rank(other)))
     }
 
     /// The earliest collision of the step with a plane.
@@ -172,7 +172,8 @@ impl<'a> Obstacles<'a> {
         returns: &Returns,
         counters: &mut Counters,
     ) -> Option<Hit> {
-        let mut earliest: Option<Hit> = None;
+        // The f, and the surface; and how fast it closes there.
+        let (mut earliest, mut closing) = (None, 0.0);
         for facing in &self.planes {
             let surface = facing.surface;
             let known = contacts.iter().zip(returns).find(|(c, _)| c.surface == surface);
@@ -180,16 +181,16 @@ impl<'a> Obstacles<'a> {
                 Some((_, back)) => *back,
                 None => {
                     counters.clearances += 1;
-                    facing.entry(step, self.radius, earliest.map_or(step.to, |hit| hit.f))
+                    facing.entry(step, self.radius, earliest.map_or(step.to, |(f, _)| f))
                 }
             };
             if let Entry::At { f, rate } = entry
-                && self.is_earlier(f, surface, &earliest)
+                && self.is_earlier(f, surface, earliest)
             {
-                earliest = Some(Hit { f, surface, face: None, rate: Some(rate) });
+                (earliest, closing) = (Some((f, surface)), rate);
             }
         }
-        earliest
+        earliest.map(|(f, surface)| Hit { f, surface, face: None, rate: Some(closing) })
     }
 
     /// The earliest collision of the step, with `earliest` or with a face before that.
@@ -220,7 +221,7 @@ impl<'a> Obstacles<'a> {
             counters.add(&work);
             counters.clearances += asked.get();
             if let Some(found) = found
-                && self.is_earlier(found.f, *surface, &earliest)
+                && self.is_earlier(found.f, *surface, earliest.map(|hit| (hit.f, hit.surface)))
             {
                 earliest = Some(Hit { f: found.f, surface: *surface, face: Some(found.face), rate: None });
             }

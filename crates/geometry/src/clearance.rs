@@ -107,7 +107,7 @@ impl Clearance {
     /// Lines and parabolas are solved in closed form, to a few units of roundoff; higher degrees to the last bit of f that
     /// the rounded coefficients determine, on the early side. A parabola that touches 0 from above without crossing is
     /// reported as a touch (`rate` 0).
-    #[inline]
+    #[inline(always)]
     pub fn first_entry(&self, from: f64, to: f64) -> Entry {
         if from > to {
             return Entry::Never;

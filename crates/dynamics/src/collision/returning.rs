@@ -131,10 +131,10 @@ impl<'a> Departure<'a> {
 }
 
 impl Obstacles<'_> {
-    /// When the path of `step` returns to each of `contacts`; never to a lasting one, along which it moves.
+    /// Makes `returns` when the path of `step` returns to each of `contacts`; never to a lasting one, along which it moves.
     #[inline(always)]
-    pub fn returns(&self, step: &Step, contacts: &[Contact], counters: &mut Counters) -> Returns {
-        let mut returns = Returns::new();
+    pub fn returns(&self, step: &Step, contacts: &[Contact], returns: &mut Returns, counters: &mut Counters) {
+        returns.clear();
         for contact in contacts {
             returns.push(if contact.lasting {
                 Entry::Never
@@ -143,7 +143,6 @@ impl Obstacles<'_> {
                 leaving(step, contact).first_entry(0.0, step.to)
             });
         }
-        returns
     }
 
     /// `contacts`, to which `step` comes back by `returns`, as the search of a mesh needs them; `face` is left to that mesh.

@@ -20,7 +20,7 @@ use nalgebra::Vector3;
 pub struct Step {
     /// The centre's path; f = 1 is `seconds` after the start.
     pub path: Path,
-    /// The velocity v(f) = v0 + v1 f + v2 f^2 ..., in m/s.
+    /// The velocity v(f) = v0 + v1 f + v2 f^2 ..., in m/s; of a path with two terms at most, it has two as well.
     pub velocity: [Vector3<f64>; MAX_DEGREE + 1],
     /// The time from f = 0 to f = 1, in s.
     pub seconds: f64,
@@ -108,8 +108,7 @@ impl Step {
     #[inline]
     pub fn at(&self, f: f64) -> State {
         let [v0, v1, v2, v3, v4] = &self.velocity;
-        // The velocity has no terms beyond those of the path.
-        let further = if self.path.degree() <= 2 { *v2 } else { (v4 * f + v3) * f + v2 };
+        let further = if self.path.degree() <= 2 { Vector3::zeros() } else { (v4 * f + v3) * f + v2 };
         let velocity = (further * f + v1) * f + v0;
         State { position: self.path.at(f), velocity }
     }

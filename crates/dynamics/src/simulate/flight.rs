@@ -48,7 +48,8 @@ impl<O: Observer> Walk<'_, O> {
         if self.is_unstable(&step) || self.diverges(&step) {
             return;
         }
-        let returns = self.obstacles.returns(&step, self.contacts, &mut self.counters);
+        let mut returns = Returns::new();
+        self.obstacles.returns(&step, self.contacts, &mut returns, &mut self.counters);
         let hit = self.obstacles.earliest(&step, self.contacts, &returns, &mut self.counters);
         match hit {
             None => {

@@ -2,7 +2,7 @@
 
 use super::Walk;
 use crate::body::State;
-use crate::collision::Hit;
+use crate::collision::{Hit, Returns};
 use crate::contacts::{Contact, Contacts, PerContact};
 use crate::events::{Bound, EventKind, Motion};
 use crate::integrators::{Step, exact};
@@ -156,7 +156,8 @@ impl<O: Observer> Walk<'_, O> {
         step.to = off.unwrap_or(step.to);
         let mut crossings = Vec::new();
         let exit = self.exit(&step, &mut crossings);
-        let returns = self.obstacles.returns(&step, self.contacts, &mut self.counters);
+        let mut returns = Returns::new();
+        self.obstacles.returns(&step, self.contacts, &mut returns, &mut self.counters);
         let hit = self.obstacles.earliest(&step, self.contacts, &returns, &mut self.counters);
         let hit = hit.filter(|hit| exit.is_none_or(|(f, ..)| hit.f < f));
         let to = hit.map(|hit| hit.f).or(exit.map(|(f, ..)| f)).unwrap_or(step.to);
