@@ -153,8 +153,11 @@ impl<'a> Obstacles<'a> {
         returns: &Returns,
         counters: &mut Counters,
     ) -> Option<Hit> {
-        let hit = self.earliest_plane(step, contacts, returns, counters);
-        if self.plan.meshes.is_empty() { hit } else { self.earliest_face(hit, step, contacts, returns, counters) }
+        let mut hit = self.earliest_plane(step, contacts, returns, counters);
+        if !self.plan.meshes.is_empty() {
+            self.meet_faces(&mut hit, step, contacts, returns, counters);
+        }
+        hit
     }
 
     /// Whether what is found at `f` on `surface` comes before `than`: ties go by name, so that the order of the surfaces does not matter.
@@ -177,14 +180,17 @@ impl<'a> Obstacles<'a> {
         for facing in &self.planes {
             let surface = facing.surface;
             let known = contacts.iter().zip(returns).find(|(c, _)| c.surface == surface);
+            // By reference: what was just written in parts is waited for where it is copied as a whole.
+            let fresh;
             let entry = match known {
-                Some((_, back)) => *back,
+                Some((_, back)) => back,
                 None => {
                     counters.clearances += 1;
-                    facing.entry(step, self.radius, earliest.map_or(step.to, |(f, _)| f))
+                    fresh = facing.entry(step, self.radius, earliest.map_or(step.to, |(f, _)| f));
+                    &fresh
                 }
             };
-            if let Entry::At { f, rate } = entry
+            if let Entry::At { f, rate } = *entry
                 && self.is_earlier(f, surface, earliest)
             {
                 (earliest, closing) = (Some((f, surface)), rate);
@@ -193,16 +199,16 @@ impl<'a> Obstacles<'a> {
         earliest.map(|(f, surface)| Hit { f, surface, face: None, rate: Some(closing) })
     }
 
-    /// The earliest collision of the step, with `earliest` or with a face before that.
+    /// Makes `earliest` the collision of the step with a face, if one comes before it.
     #[inline(never)]
-    fn earliest_face(
+    fn meet_faces(
         &mut self,
-        mut earliest: Option<Hit>,
+        earliest: &mut Option<Hit>,
         step: &Step,
         contacts: &[Contact],
         returns: &Returns,
         counters: &mut Counters,
-    ) -> Option<Hit> {
+    ) {
         let mut holds = self.holds(step, contacts, returns);
         for (i, (surface, mesh)) in self.plan.meshes.iter().enumerate() {
             for (contact, hold) in contacts.iter().zip(&mut holds) {
@@ -223,10 +229,9 @@ impl<'a> Obstacles<'a> {
             if let Some(found) = found
                 && self.is_earlier(found.f, *surface, earliest.map(|hit| (hit.f, hit.surface)))
             {
-                earliest = Some(Hit { f: found.f, surface: *surface, face: Some(found.face), rate: None });
+                *earliest = Some(Hit { f: found.f, surface: *surface, face: Some(found.face), rate: None });
             }
         }
-        earliest
     }
 
     /// How far from touching the ball may be at `hit`, by the rounding of the search that found it: it grows with the face.

@@ -51,7 +51,7 @@ impl<O: Observer> Walk<'_, O> {
         let mut returns = Returns::new();
         self.obstacles.returns(&step, self.contacts, &mut returns, &mut self.counters);
         let hit = self.obstacles.earliest(&step, self.contacts, &returns, &mut self.counters);
-        match hit {
+        match &hit {
             None => {
                 let whole = timestep == remaining && step.time(step.to) >= remaining;
                 self.travel(&step, step.to, Motion::Flying, whole.then_some(end));
@@ -117,8 +117,8 @@ impl<O: Observer> Walk<'_, O> {
     }
 
     /// At a collision: what is touched, how fast, and the answer.
-    pub(super) fn arrive(&mut self, step: &Step, hit: Hit, returns: &Returns) {
-        let tolerance = self.touch_tolerance(step.path.reach(hit.f)).max(self.obstacles.doubt(step, &hit));
+    pub(super) fn arrive(&mut self, step: &Step, hit: &Hit, returns: &Returns) {
+        let tolerance = self.touch_tolerance(step.path.reach(hit.f)).max(self.obstacles.doubt(step, hit));
         std::mem::swap(&mut self.contacts, &mut self.before);
         let State { position, velocity } = self.state;
         // What slides is put back onto its surface, and is then elsewhere; and only of meshes it matters where.
@@ -129,10 +129,10 @@ impl<O: Observer> Walk<'_, O> {
             self.contacts[i].rate = self.rate(step, hit, &self.contacts[i], returns);
         }
         if self.standstill > 0 && self.contacts.iter().all(|c| c.rate >= 0.0) {
-            self.add_seen(&hit, &velocity);
+            self.add_seen(hit, &velocity);
         }
         if self.observer.looks_at_events() {
-            self.bound = self.bound(step, &hit, tolerance);
+            self.bound = self.bound(step, hit, tolerance);
         }
         let collapses = self.standstill > 0 && self.collapses(tolerance);
         let carrier = self.before.iter().find(|b| b.lasting).copied();
@@ -261,7 +261,7 @@ impl<O: Observer> Walk<'_, O> {
     }
 
     /// The rate of change of a contact's clearance on arrival: from the clearance itself where it was solved, else n.v.
-    fn rate(&self, step: &Step, hit: Hit, contact: &Contact, returns: &Returns) -> f64 {
+    fn rate(&self, step: &Step, hit: &Hit, contact: &Contact, returns: &Returns) -> f64 {
         let known =
             self.before.iter().zip(returns).find(|(b, _)| b.surface == contact.surface && b.normal == contact.normal);
         if let Some((b, known)) = known {

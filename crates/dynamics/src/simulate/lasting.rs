@@ -177,14 +177,14 @@ impl<O: Observer> Walk<'_, O> {
                 // Friction at the end of a settling changes the velocity: the path no longer tells it.
                 let step = Step { exact: step.exact && self.settling.is_none(), ..step };
                 self.end_settling();
-                self.arrive(&step, hit, &returns);
+                self.arrive(&step, &hit, &returns);
             }
             (None, Some((f, contact, bound))) => {
                 let step = Step { exact: step.exact && self.settling.is_none(), ..step };
                 self.end_settling();
                 match self.face_that_rises(contact, bound.next) {
                     Some((surface, face)) => {
-                        self.arrive(&step, Hit { f, surface, face: Some(face), rate: None }, &returns)
+                        self.arrive(&step, &Hit { f, surface, face: Some(face), rate: None }, &returns)
                     }
                     None => self.cross(contact, &bound),
                 }
