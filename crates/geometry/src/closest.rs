@@ -91,6 +91,16 @@ impl Asked {
         }
     }
 
+    /// What of the triangle is closest to `x`, as [`closest`](Self::closest) says.
+    #[inline]
+    pub(crate) fn nearest(&self, x: &Vector3<f64>) -> Feature {
+        if self.in_range && largest(self.size, amax(&(x - self.corners[0]))) < LIMIT_OF_DIRECT {
+            self.frame.nearest(&Point3::from(*x))
+        } else {
+            self.closest(x).feature
+        }
+    }
+
     /// Whether the inside of the triangle is what is nearest to `x`: false where that is in doubt.
     #[inline]
     pub(crate) fn is_under(&self, x: &Vector3<f64>) -> bool {
@@ -172,14 +182,6 @@ impl Frame {
         Self { first, vertices, ab, ac, normal, is_needle }
     }
 
-    fn vertex(&self, i: u8) -> Feature {
-        Feature::Vertex((self.first + i) % 3)
-    }
-
-    fn edge(&self, i: u8) -> Feature {
-        Feature::Edge((self.first + i) % 3)
-    }
-
     /// How far the foot of a point is inside of each edge, from the point's place as seen from each vertex.
     ///
     /// Triple products, not the differences of products d1 d4 - d3 d2 ... that they equal: those lose the height of a needle.
@@ -199,66 +201,109 @@ impl Frame {
         self.insides(&self.vertices.map(|v| x - v)).iter().all(|inside| *inside > 0.0)
     }
 
-    /// The closest point, of a triangle and a point in [`DIRECT_RANGE`].
-    fn closest(&self, x: &Point3<f64>) -> Closest {
-        let ([a, b, c], ab, ac) = (self.vertices, self.ab, self.ac);
-        let at = |point: Point3<f64>, offset, feature| Closest { point, offset, feature };
-
-        let ap = x - a;
-        let (d1, d2) = (ab.dot(&ap), ac.dot(&ap));
+    /// What of the triangle is closest to the point that is seen like this from each vertex, counted from the first one here.
+    #[inline]
+    fn region(&self, [ap, bp, cp]: &[Vector3<f64>; 3]) -> Feature {
+        let (ab, ac) = (self.ab, self.ac);
+        let (d1, d2) = (ab.dot(ap), ac.dot(ap));
         if d1 <= 0.0 && d2 <= 0.0 {
-            return at(a, ap, self.vertex(0));
+            return Feature::Vertex(0);
         }
-        let bp = x - b;
-        let (d3, d4) = (ab.dot(&bp), ac.dot(&bp));
+        let (d3, d4) = (ab.dot(bp), ac.dot(bp));
         if d3 >= 0.0 && d4 <= d3 {
-            return at(b, bp, self.vertex(1));
+            return Feature::Vertex(1);
         }
-        let cp = x - c;
-        let (d5, d6) = (ab.dot(&cp), ac.dot(&cp));
+        let (d5, d6) = (ab.dot(cp), ac.dot(cp));
         if d6 >= 0.0 && d5 <= d6 {
-            return at(c, cp, self.vertex(2));
+            return Feature::Vertex(2);
         }
-        // From the end that is first by size and without the third vertex: the same bits from each face that has the edge.
-        let along = |p: &Point3<f64>, q: &Point3<f64>, feature| {
-            let (from, to) = if by_size(&p.coords, &q.coords).is_le() { (p, q) } else { (q, p) };
-            let (edge, offset) = (to - from, x - from);
-            let length = edge.norm_squared();
-            if length == 0.0 {
-                return at(*from, offset, feature);
-            }
-            let part = edge.dot(&offset) / length;
-            let offset = offset - edge * part;
-            // Once more, for what rounding left along the edge.
-            let rest = edge.dot(&offset) / length;
-            at(from + edge * (part + rest), offset - edge * rest, feature)
-        };
-        let [vc, vb, va] = self.insides(&[ap, bp, cp]);
+        let [vc, vb, va] = self.insides(&[*ap, *bp, *cp]);
         if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 && d1 > d3 {
-            return along(&a, &b, self.edge(0));
+            return Feature::Edge(0);
         }
         if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 && d2 > d6 {
-            return along(&a, &c, self.edge(2));
+            return Feature::Edge(2);
         }
         let (beyond_b, beyond_c) = (d4 - d3, d5 - d6);
         if va <= 0.0 && beyond_b >= 0.0 && beyond_c >= 0.0 && beyond_b + beyond_c > 0.0 {
-            return along(&b, &c, self.edge(1));
+            return Feature::Edge(1);
         }
-        let n = self.normal;
-        let area_squared = n.norm_squared();
-        if area_squared > 0.0 {
-            let offset = n * (n.dot(&ap) / area_squared);
-            return at(x - offset, offset, Feature::Face);
+        Feature::Face
+    }
+
+    /// A feature, counted from the first vertex, as the triangle counts them.
+    #[inline]
+    fn of_triangle(&self, feature: Feature) -> Feature {
+        match feature {
+            Feature::Face => Feature::Face,
+            Feature::Edge(i) => Feature::Edge((self.first + i) % 3),
+            Feature::Vertex(i) => Feature::Vertex((self.first + i) % 3),
         }
-        // No area, and rounding put x past every segment: the nearest vertex.
-        let nearer = |p: &Vector3<f64>, q: &Vector3<f64>| p.norm_squared() <= q.norm_squared();
-        if nearer(&ap, &bp) && nearer(&ap, &cp) {
-            at(a, ap, self.vertex(0))
-        } else if nearer(&bp, &cp) {
-            at(b, bp, self.vertex(1))
-        } else {
-            at(c, cp, self.vertex(2))
+    }
+
+    /// What of the triangle is closest to `x`, except for one without an area.
+    #[inline]
+    fn nearest(&self, x: &Point3<f64>) -> Feature {
+        self.of_triangle(self.region(&self.vertices.map(|v| x - v)))
+    }
+
+    /// The closest point, of a triangle and a point in [`DIRECT_RANGE`].
+    fn closest(&self, x: &Point3<f64>) -> Closest {
+        let vertices = &self.vertices;
+        let seen = vertices.map(|v| x - v);
+        let at = |point: Point3<f64>, offset, feature| Closest { point, offset, feature: self.of_triangle(feature) };
+        match self.region(&seen) {
+            Feature::Vertex(i) => at(vertices[usize::from(i)], seen[usize::from(i)], Feature::Vertex(i)),
+            Feature::Edge(i) => {
+                let foot = Foot::on(&vertices[usize::from(i)], &vertices[(usize::from(i) + 1) % 3], x);
+                at(foot.point, foot.offset, Feature::Edge(i))
+            }
+            Feature::Face => {
+                let (n, [ap, bp, cp]) = (self.normal, &seen);
+                let area_squared = n.norm_squared();
+                if area_squared > 0.0 {
+                    let offset = n * (n.dot(ap) / area_squared);
+                    return at(x - offset, offset, Feature::Face);
+                }
+                // No area, and rounding put x past every segment: the nearest vertex.
+                let nearer = |p: &Vector3<f64>, q: &Vector3<f64>| p.norm_squared() <= q.norm_squared();
+                let [a, b, c] = *vertices;
+                if nearer(ap, bp) && nearer(ap, cp) {
+                    at(a, *ap, Feature::Vertex(0))
+                } else if nearer(bp, cp) {
+                    at(b, *bp, Feature::Vertex(1))
+                } else {
+                    at(c, *cp, Feature::Vertex(2))
+                }
+            }
         }
+    }
+}
+
+/// The point of the line through two points that is nearest to a third, x.
+pub(crate) struct Foot {
+    pub(crate) point: Point3<f64>,
+    /// x - `point`, orthogonal to the line to a few units of itself.
+    pub(crate) offset: Vector3<f64>,
+    /// How far it is from the one point to the other: in [0, 1] between them. From which is for the two to say.
+    pub(crate) part: f64,
+}
+
+impl Foot {
+    /// From the end that is first by size, whatever the order: the same bits from each face that has the edge.
+    #[inline]
+    pub(crate) fn on(p: &Point3<f64>, q: &Point3<f64>, x: &Point3<f64>) -> Self {
+        let (from, to) = if by_size(&p.coords, &q.coords).is_le() { (p, q) } else { (q, p) };
+        let (edge, offset) = (to - from, x - from);
+        let length = edge.norm_squared();
+        if length == 0.0 {
+            return Self { point: *from, offset, part: 0.0 };
+        }
+        let part = edge.dot(&offset) / length;
+        let offset = offset - edge * part;
+        // Once more, for what rounding left along the edge.
+        let rest = edge.dot(&offset) / length;
+        Self { point: from + edge * (part + rest), offset: offset - edge * rest, part: part + rest }
     }
 }
 
