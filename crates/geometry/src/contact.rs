@@ -136,40 +136,18 @@ pub(crate) fn contact_from(ball: &MovingBall, asked: &Asked, from: f64, to: f64,
         return Contact::Miss;
     }
     let query = Query::new(ball, asked, to);
-    let mut f = from;
-    if let Some(plane) = query.face_at(f)
-        && plane.at(f) > 2.0 * query.bound_at(f)
-    {
-        *rounds += 1;
-        match query.by_face(&plane, f, rounds) {
-            Ahead::Ends(contact) => return contact,
-            Ahead::FreeUntil(free) => f = free,
-        }
-    }
-    let mut looked = false;
+    let (mut f, mut looked) = (from, false);
     for _ in 0..MAX_ROUNDS {
         if f > to {
             return Contact::Miss;
         }
         *rounds += 1;
-        let bound = query.bound_at(f);
-        let (feature, plane) = query.near(f, 2.0 * bound);
-        let (height, falling) = (plane.at(f), plane.rate(f) < 0.0);
-        if height <= 2.0 * bound && falling {
-            return Contact::At { feature, f: query.polish((feature, plane, f), f, bound, rounds) };
-        }
-        let (entry, bound) = query.meets(&plane, f);
-        let Entry::At { f: next, .. } = entry else {
-            return Contact::Miss;
+        let bound = 2.0 * query.bound_at(f);
+        let ahead = match query.face_at(f) {
+            // Twice the bound: where it is met by the bound, there is no asking it again.
+            Some(plane) if plane.at(f) > 2.0 * bound => query.by_face(&plane, f, rounds),
+            _ => query.by_nearest(f, bound, &mut looked, rounds),
         };
-        if (height <= 2.0 * bound && falling) || next - f <= 2.0 * UNIT_ROUNDOFF * f {
-            return Contact::At { feature, f: query.polish((feature, plane, f), f, bound, rounds) };
-        }
-        let ahead = match looked {
-            false if next <= to => query.look_ahead(feature, next, &mut Apart { plane, at: f, until: Some(next) }, rounds),
-            _ => Ahead::FreeUntil(next),
-        };
-        looked = true;
         match ahead {
             Ahead::Ends(contact) => return contact,
             Ahead::FreeUntil(next) => f = next,
@@ -250,6 +228,29 @@ impl<'a> Query<'a> {
         self.look_ahead(self.asked.nearest(&place), met, &mut Apart { plane: *plane, at: f, until }, rounds)
     }
 
+    /// What the plane tells that faces the ball at `f`, which touches if it is no farther off than `bound`, and what is seen from where it meets that, unless
+    /// it was `looked` for before.
+    fn by_nearest(&self, f: f64, bound: f64, looked: &mut bool, rounds: &mut u64) -> Ahead {
+        let (feature, plane) = self.near(f, bound);
+        let touches = plane.at(f) <= bound && plane.rate(f) < 0.0;
+        let contact = |bound: f64, rounds: &mut u64| {
+            Ahead::Ends(Contact::At { feature, f: self.polish((feature, plane, f), f, bound, rounds) })
+        };
+        if touches {
+            return contact(bound, rounds);
+        }
+        let (entry, bound) = self.meets(&plane, f);
+        let Entry::At { f: next, .. } = entry else { return Ahead::Ends(Contact::Miss) };
+        if (plane.at(f) <= bound && plane.rate(f) < 0.0) || next - f <= 2.0 * UNIT_ROUNDOFF * f {
+            return contact(bound, rounds);
+        }
+        if *looked || next > self.to {
+            return Ahead::FreeUntil(next);
+        }
+        *looked = true;
+        self.look_ahead(feature, next, &mut Apart { plane, at: f, until: Some(next) }, rounds)
+    }
+
     /// From `f`, where the ball touches to within the bound, to where it touches: support planes again, now where they are. The triangle
     /// is behind them all the same, so this ends at the contact to the rounding of the planes: on a face at once, at an edge or a vertex in
     /// a step or two of Newton's method. The first is the `plane` that faces the ball at `seen`, of that `feature`.
@@ -267,7 +268,7 @@ impl<'a> Query<'a> {
             }
             *rounds += 1;
             seen = f;
-            (feature, plane) = self.near(f, 2.0 * bound);
+            (feature, plane) = self.near(f, bound);
         }
         f
     }
@@ -277,7 +278,7 @@ impl<'a> Query<'a> {
     #[inline]
     fn is_as_seen(&self, seen: f64, f: f64) -> bool {
         let way = self.ball.path.displacement(f) - self.ball.path.displacement(seen);
-        amax(&way) <= round_bound(self.ball.radius)
+        way.norm_squared() < round_bound(self.ball.radius, self.size)
     }
 
     /// The clearance from the plane of the triangle, seen from the side the ball is on at `f`. While the ball has not met it, it is as good a

@@ -210,12 +210,11 @@ pub fn contact_doubt(extent: f64) -> f64 {
     5.0 * contact_bound(extent)
 }
 
-/// How far, along any axis, a ball of `radius` may move so that it is off the plane that faced it by rounding only: 2^-28 of that.
+/// The square of the way that a ball of `radius` may make so that it is off the plane that faced it at an edge or a vertex by rounding only, among lengths of `size`.
 ///
-/// Seen from an edge or a vertex, its centre has then moved by sqrt(3) times that at most, and a ball is off its tangent by half the square of the way
-/// over the radius: less than u / 2 of the radius.
-pub(crate) fn round_bound(radius: f64) -> f64 {
-    power_of_two(-28) * radius
+/// A ball is off its tangent by half the square of the way over the radius: by half of u `size` at most.
+pub(crate) fn round_bound(radius: f64, size: f64) -> f64 {
+    UNIT_ROUNDOFF * (radius * size)
 }
 
 /// The distance between ball and triangle that is no contact, not even in doubt, as computed from planes with their normals scaled or

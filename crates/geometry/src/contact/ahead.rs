@@ -46,7 +46,7 @@ impl Query<'_> {
     pub(super) fn look_ahead(&self, feature: Feature, from: f64, apart: &mut Apart, rounds: &mut u64) -> Ahead {
         // In a unit in which squares are in range.
         let unit = power_of_two(-exponent(self.size));
-        let (mut feature, mut from, mut free) = (feature, from, 0.0);
+        let (mut feature, mut from) = (feature, from);
         for _ in 0..MAX_LOOKS {
             let Some(there) = self.seems_to_touch(feature, from, unit) else { break };
             let place = self.ball.path.displacement(there);
@@ -62,31 +62,47 @@ impl Query<'_> {
             let mut start = apart.at;
             if !is_apart(start) {
                 let Some(until) = self.until(apart) else { return Ahead::Ends(Contact::Miss) };
-                start = until;
-                if !is_apart(start) {
-                    break;
+                if !is_apart(until) {
+                    let closest = self.asked.nearest(&place);
+                    if closest == feature {
+                        break;
+                    }
+                    feature = closest;
+                    continue;
                 }
+                start = until;
             }
+            let near = 2.0 * self.bound_at(there);
+            let is_closest = is_closest && self.face_at(there).is_none_or(|face| face.at(there) < -near);
             if is_closest
                 && let Entry::At { f, .. } = plane.first_entry(start, self.end)
                 && self.is_as_seen(there, f)
-                && self.face_at(there).is_none_or(|face| face.at(there) < -2.0 * self.bound_at(there))
             {
                 let in_time = f <= self.to || matches!(self.meets(&plane, start).0, Entry::At { f, .. } if f <= self.to);
                 return Ahead::Ends(if in_time { Contact::At { f, feature } } else { Contact::Miss });
             }
-            match self.meets(&plane, start).0 {
-                Entry::At { f, .. } if f <= self.to => free = largest(free, f),
+            let (free, bound) = match self.meets(&plane, start) {
+                (Entry::At { f, .. }, bound) if f <= self.to => (f, bound),
                 _ => return Ahead::Ends(Contact::Miss),
+            };
+            if is_closest && plane.at(there).abs() <= near && plane.rate(there) < 0.0 {
+                // A graze: it touches there, or before.
+                let f = self.polish((feature, plane, there), free, bound, rounds);
+                return Ahead::Ends(Contact::At { f, feature });
             }
-            let closest = self.asked.nearest(&place);
-            if closest == feature {
+            apart.until = Some(apart.until.map_or(free, |until| largest(until, free)));
+            let closest = if free <= there {
+                self.asked.nearest(&place)
+            } else {
+                self.asked.nearest(&self.ball.path.displacement(free))
+            };
+            if closest == feature && free <= from {
                 break;
             }
-            (feature, from) = (closest, free);
+            (feature, from) = (closest, largest(from, free));
         }
         match self.until(apart) {
-            Some(until) => Ahead::FreeUntil(largest(until, free)),
+            Some(until) => Ahead::FreeUntil(until),
             None => Ahead::Ends(Contact::Miss),
         }
     }
@@ -144,7 +160,7 @@ impl Query<'_> {
         let per_square = if square > 0.0 { 1.0 / square } else { 0.0 };
         let across = |v: Vector3<f64>| v - along * (along.dot(&v) * per_square);
         let way = Way::new(self.ball.path, across(-origin), |term| across(term * unit));
-        let enough = round_bound(radius);
+        let enough = round_bound(radius, self.size * unit);
         let mut at = from;
         for _ in 0..MAX_STEPS {
             let [away, velocity, bend] = way.at(at);
@@ -158,9 +174,9 @@ impl Query<'_> {
             let root = discriminant.sqrt();
             let step = c / (root - b);
             at += step;
-            // What the step has left out of the square is this times 2, and moves the place by less than `enough`.
+            // Of the square, a step leaves out this: it is as much over 2 `root` too far.
             let left_out = (velocity.dot(&bend) + 0.25 * bend.norm_squared() * step) * step * (step * step);
-            if left_out * left_out * a <= enough * enough * discriminant {
+            if left_out * left_out * a < enough * discriminant {
                 break;
             }
         }
