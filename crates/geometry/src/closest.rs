@@ -62,8 +62,6 @@ pub(crate) struct Asked {
     frame: Frame,
     size: f64,
     in_range: bool,
-    /// By which power of two the frame is smaller than the triangle.
-    scaled_by: i32,
 }
 
 impl Asked {
@@ -74,11 +72,11 @@ impl Asked {
         let size = largest(amax(&(b - a)), amax(&(c - a)));
         let triangle = [Point3::from(a), Point3::from(b), Point3::from(c)];
         if (LEAST_DIRECT..LIMIT_OF_DIRECT).contains(&size) || size == 0.0 {
-            return Self { corners, frame: Frame::new(&triangle), size, in_range: size > 0.0, scaled_by: 0 };
+            return Self { corners, frame: Frame::new(&triangle), size, in_range: size > 0.0 };
         }
         let k = exponent(size);
         let frame = Frame::new(&triangle.map(|p| p.map(|c| scale(c, -k))));
-        Self { corners, frame, size: scale(size, -k), in_range: false, scaled_by: k }
+        Self { corners, frame, size: scale(size, -k), in_range: false }
     }
 
     /// What [`closest_point`] says, bit for bit.
@@ -99,17 +97,6 @@ impl Asked {
         } else {
             self.closest(x).feature
         }
-    }
-
-    /// Whether the inside of the triangle is what is nearest to `x`: false where that is in doubt.
-    #[inline]
-    pub(crate) fn is_under(&self, x: &Vector3<f64>) -> bool {
-        let away = amax(&(x - self.corners[0]));
-        if self.scaled_by == 0 {
-            return largest(self.size, away) < LIMIT_OF_DIRECT && self.frame.is_under(&Point3::from(*x));
-        }
-        let to_unit = |c: f64| scale(c, -self.scaled_by);
-        to_unit(away) < LIMIT_OF_DIRECT && self.frame.is_under(&Point3::from(x.map(to_unit)))
     }
 
     /// The corners of the triangle.
@@ -191,19 +178,9 @@ impl Frame {
         [inside(&self.ab, ap), inside(ap, &self.ac), inside(bp, cp)]
     }
 
-    /// Whether `x` is over the inside of the triangle, to the rounding of its distances from the vertices. Of a needle, the triple products do not
-    /// tell what is beyond its ends.
-    #[inline]
-    fn is_under(&self, x: &Point3<f64>) -> bool {
-        if self.is_needle {
-            return self.closest(x).feature == Feature::Face;
-        }
-        self.insides(&self.vertices.map(|v| x - v)).iter().all(|inside| *inside > 0.0)
-    }
-
     /// What of the triangle is closest to the point that is seen like this from each vertex, counted from the first one here.
     #[inline]
-    fn region(&self, [ap, bp, cp]: &[Vector3<f64>; 3]) -> Feature {
+    fn region(&self, [ap, bp, cp]: &[Vector3<f64>; 3], insides: impl FnOnce() -> [f64; 3]) -> Feature {
         let (ab, ac) = (self.ab, self.ac);
         let (d1, d2) = (ab.dot(ap), ac.dot(ap));
         if d1 <= 0.0 && d2 <= 0.0 {
@@ -217,7 +194,7 @@ impl Frame {
         if d6 >= 0.0 && d5 <= d6 {
             return Feature::Vertex(2);
         }
-        let [vc, vb, va] = self.insides(&[*ap, *bp, *cp]);
+        let [vc, vb, va] = insides();
         if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 && d1 > d3 {
             return Feature::Edge(0);
         }
@@ -244,7 +221,13 @@ impl Frame {
     /// What of the triangle is closest to `x`, except for one without an area.
     #[inline]
     fn nearest(&self, x: &Point3<f64>) -> Feature {
-        self.of_triangle(self.region(&self.vertices.map(|v| x - v)))
+        let seen = self.vertices.map(|v| x - v);
+        let insides = self.insides(&seen);
+        // Of a needle, the triple products do not tell what is beyond its ends.
+        if !self.is_needle && insides.iter().all(|inside| *inside > 0.0) {
+            return Feature::Face;
+        }
+        self.of_triangle(self.region(&seen, || insides))
     }
 
     /// The closest point, of a triangle and a point in [`DIRECT_RANGE`].
@@ -252,11 +235,12 @@ impl Frame {
         let vertices = &self.vertices;
         let seen = vertices.map(|v| x - v);
         let at = |point: Point3<f64>, offset, feature| Closest { point, offset, feature: self.of_triangle(feature) };
-        match self.region(&seen) {
+        match self.region(&seen, || self.insides(&seen)) {
             Feature::Vertex(i) => at(vertices[usize::from(i)], seen[usize::from(i)], Feature::Vertex(i)),
             Feature::Edge(i) => {
-                let foot = Foot::on(&vertices[usize::from(i)], &vertices[(usize::from(i) + 1) % 3], x);
-                at(foot.point, foot.offset, Feature::Edge(i))
+                let vertex = |i: u8| &vertices[usize::from(i)].coords;
+                let foot = Foot::on(ends_of_edge(i, vertex).map(vertex), &x.coords);
+                at(foot.point.into(), foot.offset, Feature::Edge(i))
             }
             Feature::Face => {
                 let (n, [ap, bp, cp]) = (self.normal, &seen);
@@ -280,20 +264,19 @@ impl Frame {
     }
 }
 
-/// The point of the line through two points that is nearest to a third, x.
+/// The point of a line that is nearest to x.
 pub(crate) struct Foot {
-    pub(crate) point: Point3<f64>,
+    pub(crate) point: Vector3<f64>,
     /// x - `point`, orthogonal to the line to a few units of itself.
     pub(crate) offset: Vector3<f64>,
-    /// How far it is from the one point to the other: in [0, 1] between them. From which is for the two to say.
+    /// How far it is from the one end to the other: in [0, 1] between them.
     pub(crate) part: f64,
 }
 
 impl Foot {
-    /// From the end that is first by size, whatever the order: the same bits from each face that has the edge.
+    /// On the line through two points: which is the first makes a difference to the rounding.
     #[inline]
-    pub(crate) fn on(p: &Point3<f64>, q: &Point3<f64>, x: &Point3<f64>) -> Self {
-        let (from, to) = if by_size(&p.coords, &q.coords).is_le() { (p, q) } else { (q, p) };
+    pub(crate) fn on([from, to]: [&Vector3<f64>; 2], x: &Vector3<f64>) -> Self {
         let (edge, offset) = (to - from, x - from);
         let length = edge.norm_squared();
         if length == 0.0 {
@@ -305,6 +288,13 @@ impl Foot {
         let rest = edge.dot(&offset) / length;
         Self { point: from + edge * (part + rest), offset: offset - edge * rest, part: part + rest }
     }
+}
+
+/// Which are the ends of edge `i` of a triangle with these corners, first the one that is by size: in the same direction from each face that has the edge.
+#[inline]
+pub(crate) fn ends_of_edge<'a>(i: u8, corner: impl Fn(u8) -> &'a Vector3<f64>) -> [u8; 2] {
+    let j = (i + 1) % 3;
+    if by_size(corner(i), corner(j)).is_le() { [i, j] } else { [j, i] }
 }
 
 #[cfg(test)]

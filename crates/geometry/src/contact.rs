@@ -221,11 +221,11 @@ impl<'a> Query<'a> {
             }
         };
         let place = self.ball.path.displacement(met);
-        if self.asked.is_under(&place) {
+        match self.asked.nearest(&place) {
             // Met over its inside, the face is what is touched.
-            return Ahead::Ends(Contact::At { feature: Feature::Face, f: met });
+            Feature::Face => Ahead::Ends(Contact::At { feature: Feature::Face, f: met }),
+            feature => self.look_ahead(feature, met, &mut Apart { plane: *plane, at: f, until }, rounds),
         }
-        self.look_ahead(self.asked.nearest(&place), met, &mut Apart { plane: *plane, at: f, until }, rounds)
     }
 
     /// What the plane tells that faces the ball at `f`, which touches if it is no farther off than `bound`, and what is seen from where it meets that, unless

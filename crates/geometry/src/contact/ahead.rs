@@ -1,13 +1,11 @@
 //! Looking for a contact where it seems to be: the plane that is seen from there often tells all at once.
 
-use super::{Contact, Entry, Query, farthest_along};
+use super::{Contact, Entry, Query};
 use crate::bounds::{largest, least};
 use crate::clearance::Clearance;
-use crate::closest::{Feature, Foot};
-use crate::order::by_size;
-use crate::path::Path;
+use crate::closest::{Feature, Foot, ends_of_edge};
 use crate::rounding::{exponent, power_of_two, round_bound};
-use nalgebra::{Point3, Vector3};
+use nalgebra::Vector3;
 
 /// How often to look ahead: the edge that is nearest first may not be the one, nor its end.
 const MAX_LOOKS: u32 = 4;
@@ -32,14 +30,6 @@ pub(super) struct Apart {
     pub(super) until: Option<f64>,
 }
 
-/// What is seen of a feature from a place.
-enum Seen {
-    /// Its plane; and whether the feature is what is closest there.
-    Plane(Clearance, bool),
-    /// It is not the feature that is seen, but perhaps this one.
-    Other(Feature),
-}
-
 impl Query<'_> {
     /// Looks at the triangle from where the ball seems to meet `feature`, which is nearest to it at `from`. Any plane with the triangle behind it
     /// that the ball does not overlap at some f is a certificate from there on, wherever it was taken. Until it meets the plane that it is `apart` from, there is no contact.
@@ -48,11 +38,12 @@ impl Query<'_> {
         let unit = power_of_two(-exponent(self.size));
         let (mut feature, mut from) = (feature, from);
         for _ in 0..MAX_LOOKS {
-            let Some(there) = self.seems_to_touch(feature, from, unit) else { break };
+            let Some(part) = Part::of(feature, self.asked.corners()) else { break };
+            let there = self.seems_to_touch(&part, from, unit);
             let place = self.ball.path.displacement(there);
-            let (plane, is_closest) = match self.see(feature, &place) {
-                Seen::Plane(plane, is_closest) => (plane, is_closest),
-                Seen::Other(other) => {
+            let (plane, is_closest) = match self.see(&part, &place) {
+                Ok(seen) => seen,
+                Err(other) => {
                     feature = other;
                     continue;
                 }
@@ -73,7 +64,7 @@ impl Query<'_> {
                 start = until;
             }
             let near = 2.0 * self.bound_at(there);
-            let is_closest = is_closest && self.face_at(there).is_none_or(|face| face.at(there) < -near);
+            let is_closest = is_closest && self.is_through_face(&place, near);
             if is_closest
                 && let Entry::At { f, .. } = plane.first_entry(start, self.end)
                 && self.is_as_seen(there, f)
@@ -108,6 +99,7 @@ impl Query<'_> {
     }
 
     /// Until where the ball surely is apart from the plane; none if it meets it nowhere.
+    #[inline]
     fn until(&self, apart: &mut Apart) -> Option<f64> {
         if apart.until.is_none() {
             apart.until = self.meets(&apart.plane, apart.at).0.f();
@@ -115,103 +107,100 @@ impl Query<'_> {
         apart.until
     }
 
-    /// The plane across the direction from an edge or a vertex to a `place` of the centre.
-    fn see(&self, feature: Feature, place: &Vector3<f64>) -> Seen {
+    /// Whether the ball, with its centre at `place`, reaches through the plane of the face: by more than `bound`, so that it is an edge or a vertex that it touches.
+    #[inline]
+    fn is_through_face(&self, place: &Vector3<f64>, bound: f64) -> bool {
+        let height = |n: Vector3<f64>| n.dot(&(place - self.asked.corners()[0])).abs();
+        self.normal.is_none_or(|n| height(n) < self.ball.radius - bound)
+    }
+
+    /// The plane across the direction from `part` of the triangle to a `place` of the centre; whether that is what is closest there; or what else may be.
+    #[inline]
+    fn see(&self, part: &Part, place: &Vector3<f64>) -> Result<(Clearance, bool), Feature> {
         let corners = self.asked.corners();
-        let (offset, own) = match feature {
-            Feature::Face => return Seen::Other(feature),
-            Feature::Vertex(i) => (place - corners[usize::from(i)], [i, i]),
-            Feature::Edge(i) => {
-                let j = (i + 1) % 3;
-                let [p, q] = [i, j].map(|i| Point3::from(corners[usize::from(i)]));
-                let foot = Foot::on(&p, &q, &Point3::from(*place));
-                if !(0.0..=1.0).contains(&foot.part) {
-                    let nearer = (place - p.coords).norm_squared() < (place - q.coords).norm_squared();
-                    return Seen::Other(Feature::Vertex(if nearer { i } else { j }));
-                }
-                (foot.offset, [i, j])
+        let [from, to] = part.ends.map(|i| &corners[usize::from(i)]);
+        let offset = if part.is_edge() {
+            let foot = Foot::on([from, to], place);
+            if !(0.0..=1.0).contains(&foot.part) {
+                return Err(Feature::Vertex(part.ends[usize::from(foot.part > 0.5)]));
             }
+            foot.offset
+        } else {
+            place - from
         };
         let distance = offset.norm();
         if !(distance > 0.0) {
-            return Seen::Other(Feature::Face);
+            return Err(Feature::Face);
         }
         let normal = offset / distance;
-        let [own, other] = own.map(|i| normal.dot(&corners[usize::from(i)]));
-        let farthest = farthest_along(corners, &normal);
+        let heights = corners.map(|corner| normal.dot(&corner));
+        let own = part.ends.map(|i| heights[usize::from(i)]);
+        let farthest = largest(largest(heights[0], heights[1]), heights[2]);
         let plane = self.ball.path.clearance(-farthest - self.ball.radius, &normal);
-        Seen::Plane(plane, largest(own, other) == farthest)
+        Ok((plane, largest(own[0], own[1]) == farthest))
     }
 
-    /// Where from `from` on, but not after the end, the ball seems to touch a vertex or the line of an edge, or to pass it: as if the square of its distance were a parabola, and again
-    /// from there (Halley's method). Rounding and the other features are not asked. `unit` is what lengths are multiplied by.
-    fn seems_to_touch(&self, feature: Feature, from: f64, unit: f64) -> Option<f64> {
-        let radius = self.ball.radius * unit;
-        let corner = |i: u8| self.asked.corners()[usize::from(i)] * unit;
-        let (origin, along) = match feature {
-            Feature::Face => return None,
-            Feature::Edge(i) => {
-                let (p, q) = (corner(i), corner((i + 1) % 3));
-                if by_size(&p, &q).is_le() { (p, q - p) } else { (q, p - q) }
-            }
-            Feature::Vertex(i) => (corner(i), Vector3::zeros()),
+    /// Where from `from` on, but not after the end, the ball seems to touch a vertex or the line of an edge, or to pass it, if it goes on with its acceleration there:
+    /// as if the square of its distance were a parabola, and again from there (Halley's method). Rounding and the other features are not asked. `unit` is what lengths
+    /// are multiplied by.
+    #[inline]
+    fn seems_to_touch(&self, part: &Part, from: f64, unit: f64) -> f64 {
+        let (path, corners) = (self.ball.path, self.asked.corners());
+        let [origin, end] = part.ends.map(|i| &corners[usize::from(i)]);
+        // Zero for a vertex.
+        let along = (end - origin) * unit;
+        let per_square = if part.is_edge() { 1.0 / along.norm_squared() } else { 0.0 };
+        let across = |v: Vector3<f64>| {
+            let v = v * unit;
+            v - along * (along.dot(&v) * per_square)
         };
-        let square = along.norm_squared();
-        let per_square = if square > 0.0 { 1.0 / square } else { 0.0 };
-        let across = |v: Vector3<f64>| v - along * (along.dot(&v) * per_square);
-        let way = Way::new(self.ball.path, across(-origin), |term| across(term * unit));
+        let away = across(path.displacement(from) - origin);
+        let (velocity, bend) = (across(path.derivative(from)), across(path.second_derivative(from)));
+        // The square of the distance from the line over that of the radius: c + 2 b s + a s^2 + 2 k s^3 + l s^4 / 2 after s.
+        let radius = self.ball.radius * unit;
+        let speed_squared = velocity.norm_squared();
+        let (c, b, a) = (away.norm_squared() - radius * radius, away.dot(&velocity), speed_squared + away.dot(&bend));
+        let (k, l) = (0.5 * velocity.dot(&bend), 0.5 * bend.norm_squared());
         let enough = round_bound(radius, self.size * unit);
-        let mut at = from;
+        let mut s = 0.0;
         for _ in 0..MAX_STEPS {
-            let [away, velocity, bend] = way.at(at);
-            let (a, b) = (velocity.norm_squared(), away.dot(&velocity));
-            let c = away.norm_squared() - radius * radius;
-            let discriminant = b * b - (a + away.dot(&bend)) * c;
-            if discriminant < 0.0 || b >= 0.0 {
-                at -= b / a; // where it is nearest
+            let height = c + (2.0 * b + (a + (2.0 * k + 0.5 * l * s) * s) * s) * s;
+            let slope = b + (a + (3.0 * k + l * s) * s) * s;
+            let discriminant = slope * slope - (a + (6.0 * k + 3.0 * l * s) * s) * height;
+            if discriminant < 0.0 || slope >= 0.0 {
+                s -= slope / speed_squared; // where it is nearest
                 break;
             }
-            let root = discriminant.sqrt();
-            let step = c / (root - b);
-            at += step;
-            // Of the square, a step leaves out this: it is as much over 2 `root` too far.
-            let left_out = (velocity.dot(&bend) + 0.25 * bend.norm_squared() * step) * step * (step * step);
-            if left_out * left_out * a < enough * discriminant {
+            let step = height / (discriminant.sqrt() - slope);
+            // What this leaves out moves the square by so much, and so the place by it over twice the root and by the speed.
+            let left_out = (2.0 * (k + l * s) + 0.5 * l * step) * step * (step * step);
+            s += step;
+            if left_out * left_out * speed_squared < enough * discriminant {
                 break;
             }
         }
-        Some(if at > from { least(at, self.end) } else { from })
+        if s > 0.0 { least(from + s, self.end) } else { from }
     }
 }
 
-/// The way of the centre as seen from a line or a point: its Taylor terms.
-struct Way {
-    terms: [Vector3<f64>; 5],
-    degree: usize,
+/// An edge or a vertex.
+struct Part {
+    /// The corners where it begins and ends: of an edge, the same from each face that has it.
+    ends: [u8; 2],
 }
 
-impl Way {
-    /// From `start`, along the terms of a path as `seen`.
+impl Part {
+    /// A face is neither.
     #[inline]
-    fn new(path: &Path, start: Vector3<f64>, seen: impl Fn(&Vector3<f64>) -> Vector3<f64>) -> Self {
-        let mut terms = [Vector3::zeros(); 5];
-        terms[0] = start;
-        for (term, own) in terms[1..].iter_mut().zip(path.terms()) {
-            *term = seen(own);
+    fn of(feature: Feature, corners: &[Vector3<f64>; 3]) -> Option<Self> {
+        match feature {
+            Feature::Face => None,
+            Feature::Vertex(i) => Some(Self { ends: [i, i] }),
+            Feature::Edge(i) => Some(Self { ends: ends_of_edge(i, |i| &corners[usize::from(i)]) }),
         }
-        Self { terms, degree: path.terms().len() }
     }
 
-    /// Place, velocity and half of... at f.
-    #[inline]
-    fn at(&self, f: f64) -> [Vector3<f64>; 3] {
-        let [t0, t1, t2, t3, t4] = &self.terms;
-        if self.degree <= 2 {
-            let bend = t2 * f;
-            return [t0 + (t1 + bend) * f, t1 + bend * 2.0, t2 * 2.0];
-        }
-        let place = t0 + (t1 + (t2 + (t3 + t4 * f) * f) * f) * f;
-        let velocity = t1 + (t2 * 2.0 + (t3 * 3.0 + t4 * (4.0 * f)) * f) * f;
-        [place, velocity, t2 * 2.0 + (t3 * 6.0 + t4 * (12.0 * f)) * f]
+    fn is_edge(&self) -> bool {
+        self.ends[0] != self.ends[1]
     }
 }
