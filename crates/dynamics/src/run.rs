@@ -15,7 +15,7 @@ use thiserror::Error;
 
 /// Balls simulated before their results are handed on, for each thread: what bounds the memory. Among as many there are neighbours,
 /// which meet the same part of a mesh while it is in the cache.
-const BALLS_IN_FLIGHT: usize = 2048;
+const BALLS_IN_FLIGHT: usize = 4096;
 
 /// Balls that a thread takes at a time: enough to forget what taking them costs, few enough that no thread waits long for another.
 const BALLS_AT_A_TIME: usize = 8;

@@ -1,6 +1,6 @@
 //! The search for the first contact: pieces of the path front to back, and on each the faces that the tree lets through.
 
-use super::surroundings::Left;
+use super::surroundings::{Left, PutOff};
 use super::{FirstContact, Surroundings, Work};
 use crate::bounds::{amax, largest, least};
 use crate::bvh::FatSegment;
@@ -51,8 +51,7 @@ impl Mesh {
             reach: 0.0,
             stretch: Stretch::default(),
             left: std::mem::take(&mut around.left),
-            hidden: SmallVec::new(),
-            later: SmallVec::new(),
+            put_off: std::mem::take(&mut around.put_off),
             work: *work,
         };
         if best.is_some() {
@@ -64,7 +63,7 @@ impl Mesh {
                 search.begin(0.0, last, within, doubt);
                 faces.iter().for_each(|&face| search.consider(face, self.triangle_from(face, &start)));
                 search.conclude();
-                (around.left, *work) = (search.left, search.work);
+                (around.left, around.put_off, *work) = (search.left, search.put_off, search.work);
                 return search.best;
             }
         }
@@ -112,7 +111,7 @@ impl Mesh {
                 break;
             }
         }
-        (around.left, *work) = (search.left, search.work);
+        (around.left, around.put_off, *work) = (search.left, search.put_off, search.work);
         search.best
     }
 
@@ -159,10 +158,7 @@ struct Search<'a, F> {
     reach: f64,
     stretch: Stretch,
     left: Left,
-    /// Faces that are behind what the ball holds to, all through the piece.
-    hidden: SmallVec<[u32; 8]>,
-    /// Faces that the ball does not seem to hit inside: looked at again when the one is known that it does hit.
-    later: SmallVec<[u32; 8]>,
+    put_off: PutOff,
     work: Work,
 }
 
@@ -192,7 +188,7 @@ impl<F: Fn(u32) -> f64> Search<'_, F> {
             return;
         }
         if self.best.is_none() && !self.stretch.leads_into(&corners, normal, self.ball.radius) {
-            self.later.push(face);
+            self.put_off.later.push(face);
             return;
         }
         if self.best.is_some() && self.stretch.is_off_nearest(&corners) {
@@ -209,7 +205,7 @@ impl<F: Fn(u32) -> f64> Search<'_, F> {
         }
         let held = self.ball.held_off(&self.mesh.triangle(face), 0.0);
         if held > self.limit {
-            self.hidden.push(face);
+            self.put_off.hidden.push(face);
             return held;
         }
         let known = (self.free_until)(face);
@@ -256,7 +252,8 @@ impl<F: Fn(u32) -> f64> Search<'_, F> {
 
     /// Asks what was put off, as far as it is still of interest.
     fn conclude(&mut self) {
-        for face in std::mem::take(&mut self.later) {
+        for i in 0..self.put_off.later.len() {
+            let face = self.put_off.later[i];
             let corners = self.mesh.triangle_from(face, &self.start);
             // Without a hit, the piece is the one for which its plane did not tell.
             let is_off_face = self.best.is_some() && self.stretch.is_off_face(&corners, self.mesh.plain_normal(face));
@@ -265,10 +262,11 @@ impl<F: Fn(u32) -> f64> Search<'_, F> {
             }
         }
         self.left.to = self.limit;
-        let hidden = std::mem::take(&mut self.hidden);
-        if !(hidden.is_empty() || self.is_off_holds()) {
-            self.left.faces.extend(hidden.into_iter().map(|face| (face, f64::INFINITY)));
+        if !(self.put_off.hidden.is_empty() || self.is_off_holds()) {
+            self.left.faces.extend(self.put_off.hidden.iter().map(|face| (*face, f64::INFINITY)));
         }
+        self.put_off.later.clear();
+        self.put_off.hidden.clear();
     }
 }
 

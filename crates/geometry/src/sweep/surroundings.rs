@@ -19,6 +19,8 @@ pub struct Surroundings {
     extent: f64,
     neighbourhood: Option<Neighbourhood>,
     pub(super) left: Left,
+    /// Empty between searches: their room is kept.
+    pub(super) put_off: PutOff,
 }
 
 /// All faces that a ball may touch while its centre is within `reach` of `centre`.
@@ -29,7 +31,7 @@ struct Neighbourhood {
     reach: f64,
     /// What counts as touching there.
     margin: f64,
-    faces: SmallVec<[u32; 8]>,
+    faces: SmallVec<[u32; 16]>,
 }
 
 /// The faces that a search has not ruled out where it ended.
@@ -42,6 +44,15 @@ pub(super) struct Left {
     pub within: f64,
     /// Each with the f from which on it is ruled out after all.
     pub faces: SmallVec<[(u32, f64); 8]>,
+}
+
+/// Faces that a search puts off.
+#[derive(Debug, Clone, Default)]
+pub(super) struct PutOff {
+    /// Those behind what the ball holds to, all through the piece.
+    pub hidden: Vec<u32>,
+    /// Those that the ball does not seem to hit inside: looked at again when the one is known that it does hit.
+    pub later: Vec<u32>,
 }
 
 /// By how much a neighbourhood is larger than what the flight at hand needs: the hops that follow are shorter, but not in the same place.
@@ -103,7 +114,7 @@ impl Surroundings {
 
 impl Mesh {
     /// The faces within `distance` of `centre`, but for rounding.
-    fn faces_within(&self, centre: &Point3<f64>, distance: f64, work: &mut Work) -> SmallVec<[u32; 8]> {
+    fn faces_within(&self, centre: &Point3<f64>, distance: f64, work: &mut Work) -> SmallVec<[u32; 16]> {
         let mut faces = SmallVec::new();
         let around = Aabb::of_points(&[*centre]).inflate(distance + position_bound(centre.coords.amax() + distance));
         work.nodes += self.bvh().visit_box(&around, |face| {
