@@ -239,8 +239,9 @@ impl<'a> Query<'a> {
         if touches {
             return contact(bound, rounds);
         }
-        let (entry, bound) = self.meets(&plane, f);
+        let (entry, moved) = self.meets(&plane, f);
         let Entry::At { f: next, .. } = entry else { return Ahead::Ends(Contact::Miss) };
+        let bound = 2.0 * moved;
         if (plane.at(f) <= bound && plane.rate(f) < 0.0) || next - f <= 2.0 * UNIT_ROUNDOFF * f {
             return contact(bound, rounds);
         }

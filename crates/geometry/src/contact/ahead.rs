@@ -30,72 +30,75 @@ pub(super) struct Apart {
     pub(super) until: Option<f64>,
 }
 
+/// What a look at one edge or vertex told.
+enum Look {
+    /// How the search ends.
+    Ends(Contact),
+    /// What else to look at, and from where on the path.
+    At(Feature, f64),
+}
+
 impl Query<'_> {
-    /// Looks at the triangle from where the ball seems to meet `feature`, which is nearest to it at `from`. Any plane with the triangle behind it
-    /// that the ball does not overlap at some f is a certificate from there on, wherever it was taken. Until it meets the plane that it is `apart` from, there is no contact.
+    /// Looks at the triangle from where the ball seems to meet `feature`, which is nearest to it at `from`, and goes on from what is seen there. Until the ball meets the
+    /// plane that it is `apart` from, there is no contact.
     pub(super) fn look_ahead(&self, feature: Feature, from: f64, apart: &mut Apart, rounds: &mut u64) -> Ahead {
-        // In a unit in which squares are in range.
-        let unit = power_of_two(-exponent(self.size));
         let (mut feature, mut from) = (feature, from);
         for _ in 0..MAX_LOOKS {
             let Some(part) = Part::of(feature, self.asked.corners()) else { break };
-            let there = self.seems_to_touch(&part, from, unit);
-            let place = self.ball.path.displacement(there);
-            let (plane, is_closest) = match self.see(&part, &place) {
-                Ok(seen) => seen,
-                Err(other) => {
-                    feature = other;
-                    continue;
-                }
-            };
-            *rounds += 1;
-            let is_apart = |f: f64| plane.at(f) > 2.0 * self.bound_at(f);
-            let mut start = apart.at;
-            if !is_apart(start) {
-                let Some(until) = self.until(apart) else { return Ahead::Ends(Contact::Miss) };
-                if !is_apart(until) {
-                    let closest = self.asked.nearest(&place);
-                    if closest == feature {
-                        break;
-                    }
-                    feature = closest;
-                    continue;
-                }
-                start = until;
+            match self.look(&part, from, apart, rounds) {
+                Look::Ends(contact) => return Ahead::Ends(contact),
+                Look::At(other, f) if (other, f) == (feature, from) => break,
+                Look::At(other, f) => (feature, from) = (other, f),
             }
-            let near = 2.0 * self.bound_at(there);
-            let is_closest = is_closest && self.is_through_face(&place, near);
-            if is_closest
-                && let Entry::At { f, .. } = plane.first_entry(start, self.end)
-                && self.is_as_seen(there, f)
-            {
-                let in_time = f <= self.to || matches!(self.meets(&plane, start).0, Entry::At { f, .. } if f <= self.to);
-                return Ahead::Ends(if in_time { Contact::At { f, feature } } else { Contact::Miss });
-            }
-            let (free, bound) = match self.meets(&plane, start) {
-                (Entry::At { f, .. }, bound) if f <= self.to => (f, bound),
-                _ => return Ahead::Ends(Contact::Miss),
-            };
-            if is_closest && plane.at(there).abs() <= near && plane.rate(there) < 0.0 {
-                // A graze: it touches there, or before.
-                let f = self.polish((feature, plane, there), free, bound, rounds);
-                return Ahead::Ends(Contact::At { f, feature });
-            }
-            apart.until = Some(apart.until.map_or(free, |until| largest(until, free)));
-            let closest = if free <= there {
-                self.asked.nearest(&place)
-            } else {
-                self.asked.nearest(&self.ball.path.displacement(free))
-            };
-            if closest == feature && free <= from {
-                break;
-            }
-            (feature, from) = (closest, largest(from, free));
         }
         match self.until(apart) {
             Some(until) => Ahead::FreeUntil(until),
             None => Ahead::Ends(Contact::Miss),
         }
+    }
+
+    /// Looks at `part` from where the ball seems to meet it. Any plane with the triangle behind it that the ball does not overlap at some f is a
+    /// certificate from there on, wherever it was taken.
+    #[inline]
+    fn look(&self, part: &Part, from: f64, apart: &mut Apart, rounds: &mut u64) -> Look {
+        let there = self.seems_to_touch(part, from);
+        let place = self.ball.path.displacement(there);
+        let (plane, is_closest) = match self.see(part, &place) {
+            Ok(seen) => seen,
+            Err(other) => return Look::At(other, from),
+        };
+        *rounds += 1;
+        let is_apart = |f: f64| plane.at(f) > 2.0 * self.bound_at(f);
+        let mut start = apart.at;
+        if !is_apart(start) {
+            let Some(until) = self.until(apart) else { return Look::Ends(Contact::Miss) };
+            if !is_apart(until) {
+                return Look::At(self.asked.nearest(&place), from);
+            }
+            start = until;
+        }
+        let near = 2.0 * self.bound_at(there);
+        let is_closest = is_closest && self.is_through_face(&place, near);
+        let feature = part.feature;
+        if is_closest
+            && let Entry::At { f, .. } = plane.first_entry(start, self.end)
+            && self.is_as_seen(there, f)
+        {
+            let in_time = f <= self.to || self.meets(&plane, start).0.f().is_some_and(|f| f <= self.to);
+            return Look::Ends(if in_time { Contact::At { f, feature } } else { Contact::Miss });
+        }
+        let (Entry::At { f: free, .. }, moved) = self.meets(&plane, start) else { return Look::Ends(Contact::Miss) };
+        if free > self.to {
+            return Look::Ends(Contact::Miss);
+        }
+        if is_closest && plane.at(there).abs() <= near && plane.rate(there) < 0.0 {
+            // A graze: it touches there, or before.
+            let f = self.polish((feature, plane, there), free, 2.0 * moved, rounds);
+            return Look::Ends(Contact::At { f, feature });
+        }
+        apart.until = Some(apart.until.map_or(free, |until| largest(until, free)));
+        let later = if free > there { self.ball.path.displacement(free) } else { place };
+        Look::At(self.asked.nearest(&later), largest(from, free))
     }
 
     /// Until where the ball surely is apart from the plane; none if it meets it nowhere.
@@ -141,11 +144,12 @@ impl Query<'_> {
     }
 
     /// Where from `from` on, but not after the end, the ball seems to touch a vertex or the line of an edge, or to pass it, if it goes on with its acceleration there:
-    /// as if the square of its distance were a parabola, and again from there (Halley's method). Rounding and the other features are not asked. `unit` is what lengths
-    /// are multiplied by.
+    /// as if the square of its distance were a parabola, and again from there (Halley's method). Rounding and the other features are not asked.
     #[inline]
-    fn seems_to_touch(&self, part: &Part, from: f64, unit: f64) -> f64 {
+    fn seems_to_touch(&self, part: &Part, from: f64) -> f64 {
         let (path, corners) = (self.ball.path, self.asked.corners());
+        // In a unit in which squares are in range.
+        let unit = power_of_two(-exponent(self.size));
         let [origin, end] = part.ends.map(|i| &corners[usize::from(i)]);
         // Zero for a vertex.
         let along = (end - origin) * unit;
@@ -156,7 +160,7 @@ impl Query<'_> {
         };
         let away = across(path.displacement(from) - origin);
         let (velocity, bend) = (across(path.derivative(from)), across(path.second_derivative(from)));
-        // The square of the distance from the line over that of the radius: c + 2 b s + a s^2 + 2 k s^3 + l s^4 / 2 after s.
+        // By how much the square of the distance is larger than that of the radius: c + 2 b s + a s^2 + 2 k s^3 + l s^4 / 2 after s.
         let radius = self.ball.radius * unit;
         let speed_squared = velocity.norm_squared();
         let (c, b, a) = (away.norm_squared() - radius * radius, away.dot(&velocity), speed_squared + away.dot(&bend));
@@ -185,6 +189,7 @@ impl Query<'_> {
 
 /// An edge or a vertex.
 struct Part {
+    feature: Feature,
     /// The corners where it begins and ends: of an edge, the same from each face that has it.
     ends: [u8; 2],
 }
@@ -193,14 +198,15 @@ impl Part {
     /// A face is neither.
     #[inline]
     fn of(feature: Feature, corners: &[Vector3<f64>; 3]) -> Option<Self> {
-        match feature {
-            Feature::Face => None,
-            Feature::Vertex(i) => Some(Self { ends: [i, i] }),
-            Feature::Edge(i) => Some(Self { ends: ends_of_edge(i, |i| &corners[usize::from(i)]) }),
-        }
+        let ends = match feature {
+            Feature::Face => return None,
+            Feature::Vertex(i) => [i, i],
+            Feature::Edge(i) => ends_of_edge(i, |i| &corners[usize::from(i)]),
+        };
+        Some(Self { feature, ends })
     }
 
     fn is_edge(&self) -> bool {
-        self.ends[0] != self.ends[1]
+        matches!(self.feature, Feature::Edge(_))
     }
 }
