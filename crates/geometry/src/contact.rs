@@ -261,8 +261,8 @@ impl<'a> Query<'a> {
             let Entry::At { f: next, .. } = plane.first_entry(f, self.end) else {
                 break;
             };
-            let arrived =
-                next - f <= 2.0 * UNIT_ROUNDOFF * f || feature == Feature::Face || self.is_as_seen(seen, next);
+            let is_as_seen = || self.is_as_seen(&self.ball.path.displacement(seen), next);
+            let arrived = next - f <= 2.0 * UNIT_ROUNDOFF * f || feature == Feature::Face || is_as_seen();
             f = next;
             if arrived {
                 break;
@@ -274,11 +274,11 @@ impl<'a> Query<'a> {
         f
     }
 
-    /// Whether a plane that faces the ball at `seen` is as near to an edge or a vertex at `f` as rounding tells: the ball, which is round, is off it there
+    /// Whether a plane that faces the ball with its centre at `seen` is as near to an edge or a vertex at `f` as rounding tells: the ball, which is round, is off it there
     /// by half the square of its way over its radius.
     #[inline]
-    fn is_as_seen(&self, seen: f64, f: f64) -> bool {
-        let way = self.ball.path.displacement(f) - self.ball.path.displacement(seen);
+    fn is_as_seen(&self, seen: &Vector3<f64>, f: f64) -> bool {
+        let way = self.ball.path.displacement(f) - seen;
         way.norm_squared() < round_bound(self.ball.radius, self.size)
     }
 

@@ -303,6 +303,7 @@ mod tests {
         assert_eq!([position_bound(3.0), segment_bound(3.0), contact_bound(3.0)].map(units), [48.0, 24.0, 48.0]);
         assert_eq!([contact_doubt(3.0), hold_bound(2.0), point_radius(3.0)].map(units), [240.0, 256.0, 49152.0]);
         assert_eq!([cone_bound(3.0), triple_product_bound(3.0)].map(units), [384.0, 4608.0]);
+        assert_eq!(units(round_bound(2.0, 3.0)), 6.0);
         let in_f32 = |reach, radius| segment_bound_f32(reach, radius) / UNIT_ROUNDOFF_F32;
         assert_eq!([in_f32(0.0, 0.0), in_f32(3.0, 0.0), in_f32(0.0, 3.0), in_f32(3.0, 5.0)], [2.0, 50.0, 8.0, 60.0]);
         // e = 14 u times the extent; (2 e, and e times diameter times perimeter over area) and 2 e over each height.

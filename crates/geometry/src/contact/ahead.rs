@@ -82,7 +82,7 @@ impl Query<'_> {
         let feature = part.feature;
         if is_closest
             && let Entry::At { f, .. } = plane.first_entry(start, self.end)
-            && self.is_as_seen(there, f)
+            && self.is_as_seen(&place, f)
         {
             let in_time = f <= self.to || self.meets(&plane, start).0.f().is_some_and(|f| f <= self.to);
             return Look::Ends(if in_time { Contact::At { f, feature } } else { Contact::Miss });
