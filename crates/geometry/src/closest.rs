@@ -89,7 +89,7 @@ impl Asked {
         }
     }
 
-    /// What of the triangle is closest to `x`, as [`closest`](Self::closest) says.
+    /// What of the triangle is closest to `x`, as [`closest`](Self::closest) says: but on the border between two features, rounding may decide otherwise.
     #[inline]
     pub(crate) fn nearest(&self, x: &Vector3<f64>) -> Feature {
         if self.in_range && largest(self.size, amax(&(x - self.corners[0]))) < LIMIT_OF_DIRECT {

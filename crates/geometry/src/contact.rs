@@ -224,7 +224,7 @@ impl<'a> Query<'a> {
         match self.asked.nearest(&place) {
             // Met over its inside, the face is what is touched.
             Feature::Face => Ahead::Ends(Contact::At { feature: Feature::Face, f: met }),
-            feature => self.look_ahead(feature, met, &mut Apart { plane: *plane, at: f, until }, rounds),
+            feature => self.look_ahead(feature, met, &mut Apart::new(*plane, f, until), rounds),
         }
     }
 
@@ -249,7 +249,7 @@ impl<'a> Query<'a> {
             return Ahead::FreeUntil(next);
         }
         *looked = true;
-        self.look_ahead(feature, next, &mut Apart { plane, at: f, until: Some(next) }, rounds)
+        self.look_ahead(feature, next, &mut Apart::new(plane, f, Some(next)), rounds)
     }
 
     /// From `f`, where the ball touches to within the bound, to where it touches: support planes again, now where they are. The triangle

@@ -21,13 +21,21 @@ pub(super) enum Ahead {
     FreeUntil(f64),
 }
 
-/// A plane from which the ball is apart.
+/// A plane from which the ball is apart, and what is known of where there is no contact.
 pub(super) struct Apart {
-    pub(super) plane: Clearance,
+    plane: Clearance,
     /// The f at which it is.
-    pub(super) at: f64,
+    at: f64,
     /// Until where it surely is, if that is known.
-    pub(super) until: Option<f64>,
+    until: Option<f64>,
+    /// There is no contact before this, by other planes.
+    free: f64,
+}
+
+impl Apart {
+    pub(super) fn new(plane: Clearance, at: f64, until: Option<f64>) -> Self {
+        Self { plane, at, until, free: at }
+    }
 }
 
 /// What a look at one edge or vertex told.
@@ -51,8 +59,8 @@ impl Query<'_> {
                 Look::At(other, f) => (feature, from) = (other, f),
             }
         }
-        match self.until(apart) {
-            Some(until) => Ahead::FreeUntil(until),
+        match self.free_until(apart) {
+            Some(free) => Ahead::FreeUntil(free),
             None => Ahead::Ends(Contact::Miss),
         }
     }
@@ -71,11 +79,11 @@ impl Query<'_> {
         let is_apart = |f: f64| plane.at(f) > 2.0 * self.bound_at(f);
         let mut start = apart.at;
         if !is_apart(start) {
-            let Some(until) = self.until(apart) else { return Look::Ends(Contact::Miss) };
-            if !is_apart(until) {
+            let Some(free) = self.free_until(apart) else { return Look::Ends(Contact::Miss) };
+            if !is_apart(free) {
                 return Look::At(self.asked.nearest(&place), from);
             }
-            start = until;
+            start = free;
         }
         let near = 2.0 * self.bound_at(there);
         let is_closest = is_closest && self.is_through_face(&place, near);
@@ -96,18 +104,18 @@ impl Query<'_> {
             let f = self.polish((feature, plane, there), free, 2.0 * moved, rounds);
             return Look::Ends(Contact::At { f, feature });
         }
-        apart.until = Some(apart.until.map_or(free, |until| largest(until, free)));
+        apart.free = largest(apart.free, free);
         let later = if free > there { self.ball.path.displacement(free) } else { place };
         Look::At(self.asked.nearest(&later), largest(from, free))
     }
 
-    /// Until where the ball surely is apart from the plane; none if it meets it nowhere.
+    /// Until where there surely is no contact; none if the ball meets the plane nowhere.
     #[inline]
-    fn until(&self, apart: &mut Apart) -> Option<f64> {
+    fn free_until(&self, apart: &mut Apart) -> Option<f64> {
         if apart.until.is_none() {
             apart.until = self.meets(&apart.plane, apart.at).0.f();
         }
-        apart.until
+        apart.until.map(|until| largest(until, apart.free))
     }
 
     /// Whether the ball, with its centre at `place`, reaches through the plane of the face: by more than `bound`, so that it is an edge or a vertex that it touches.

@@ -117,3 +117,15 @@ fn a_ball_that_passes_the_border_and_comes_back_lands_on_the_face() {
     assert!((f - want).abs() <= contact_doubt(60.0), "{f} for {want}");
     assert!(rounds <= 5, "{rounds} rounds");
 }
+
+#[test]
+fn a_triangle_far_off_is_no_contact() {
+    // It comes down to the plane of the triangle well beside it, from where no feature's own plane tells anything new.
+    let triangle = [Point3::new(8.0, 11.0, 0.0), Point3::new(9.0, 12.0, 0.0), Point3::new(8.0, 12.0, 0.0)];
+    let path =
+        Path::parabola(Point3::new(11.0, 10.0, 0.25), Vector3::new(-5.0, 4.0, 0.0), Vector3::new(0.0, 0.0, -4.0));
+    let ball = MovingBall { path: &path, radius: 0.1, holds: &[] };
+    let mut rounds = 0;
+    assert_eq!(first_contact(&ball, &triangle, 0.0, 1.0, &mut rounds), Contact::Miss);
+    assert!(rounds <= 8, "{rounds} rounds");
+}
