@@ -140,7 +140,7 @@ impl Query<'_> {
             place - from
         };
         let distance = offset.norm();
-        if !(distance > 0.0) {
+        if distance == 0.0 {
             return Err(Feature::Face);
         }
         let normal = offset / distance;
