@@ -18,9 +18,10 @@ pub struct Step {
 
 /// Cheap ones first. The debug profile is built once, for the tests; the release profile once, for the scenes and the
 /// README.
-pub const STEPS: [Step; 12] = [
+pub const STEPS: [Step; 13] = [
     Step { name: "format", what: "the code is formatted", run: format },
     Step { name: "clippy", what: "no warning of rustc or clippy, in any target", run: clippy },
+    Step { name: "native", what: "the libraries build for all that this processor has, too", run: native },
     Step { name: "tests", what: "the tests of every crate; no snapshot is written", run: tests },
     Step { name: "doctests", what: "the examples in the documentation", run: doctests },
     Step { name: "examples", what: "the examples of the libraries run to their end", run: examples },
@@ -48,6 +49,12 @@ fn format(project: &Project, log: &mut Log) -> Result<bool> {
 
 fn clippy(project: &Project, log: &mut Log) -> Result<bool> {
     log.run(&mut project.cargo(["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))
+}
+
+fn native(project: &Project, log: &mut Log) -> Result<bool> {
+    // What is dispatched at run time may be known when it is compiled. Beside the other builds, of which nothing is built again.
+    let check = ["check", "--package", "carom-dynamics", "--target-dir", "target/native"];
+    log.run(project.cargo(check).env("RUSTFLAGS", "-D warnings -C target-cpu=native"))
 }
 
 fn tests(project: &Project, log: &mut Log) -> Result<bool> {

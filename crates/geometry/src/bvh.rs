@@ -330,6 +330,8 @@ fn walk(nodes: &[Node], segment: &LocalSegment, stack: &mut [Pending], leaves: &
     }
 }
 
+// In a program that is compiled for AVX2, only tests call it.
+#[cfg_attr(target_feature = "avx2", allow(dead_code))]
 fn walk_narrow(nodes: &[Node], segment: &LocalSegment, stack: &mut [Pending], leaves: &mut impl Show) -> u64 {
     let entries = |planes: &Planes, limit| lanes::narrow::entries(segment, planes, limit);
     walk_by(nodes, segment, stack, leaves, entries, lanes::narrow::screen)

@@ -137,8 +137,12 @@ pub(super) mod narrow {
     questions!();
 }
 
+/// In a program that is compiled for AVX2, those are what every processor has.
+#[cfg(target_feature = "avx2")]
+pub(super) use narrow as avx2;
+
 /// By the registers of AVX2.
-#[cfg(target_arch = "x86_64")]
+#[cfg(all(target_arch = "x86_64", not(target_feature = "avx2")))]
 pub(super) mod avx2 {
     use super::*;
     use bytemuck::cast;
