@@ -1,7 +1,7 @@
 //! A ball that hops about on a mesh: what it has seen of it shortens the next search, and changes no bit of what is found.
 
 use carom_dynamics::body::State;
-use carom_dynamics::collision::Obstacles;
+use carom_dynamics::collision::{Obstacles, Returns};
 use carom_dynamics::contacts::Contacts;
 use carom_dynamics::counters::Counters;
 use carom_dynamics::events::Event;
@@ -64,7 +64,8 @@ fn hop(mesh: &Mesh, radius: f64, mut state: State, [a, jerk]: [Vector3<f64>; 2],
     let mut contacts = Contacts::new();
     for _ in 0..24 {
         let (step, mut counters) = (curve(&state, a, jerk), Counters::default());
-        let returns = kept.returns(&step, &contacts, &mut counters);
+        let mut returns = Returns::new();
+        kept.returns(&step, &contacts, &mut returns, &mut counters);
         let hit = kept.earliest(&step, &contacts, &returns, &mut counters);
         let mut fresh = Obstacles::new(&plan, radius, &state, &a);
         assert_eq!(hit, fresh.earliest(&step, &contacts, &returns, &mut Counters::default()), "{step:?}");
@@ -77,7 +78,11 @@ fn hop(mesh: &Mesh, radius: f64, mut state: State, [a, jerk]: [Vector3<f64>; 2],
         tally.hops += 1;
         tally.known += u32::from(counters.nodes == 0);
         let end = step.at(hit.f);
-        let touching = |f, counters: &mut Counters| kept.touching(&end.position, &end.velocity, doubt, f, counters);
+        let touching = |f, counters: &mut Counters| {
+            let mut touched = Contacts::new();
+            kept.touching(&end.position, &end.velocity, doubt, f, &mut touched, counters);
+            touched
+        };
         let touched = touching(Some(hit.f), &mut counters);
         assert_eq!(touched, touching(None, &mut Counters::default()), "at {} of {step:?}", hit.f);
         // What is touched when is known no better than from where: to the doubt, along the normal.

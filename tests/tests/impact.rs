@@ -2,7 +2,7 @@
 
 use carom_dynamics::body::Ball;
 use carom_dynamics::clock::Clock;
-use carom_dynamics::collision::Obstacles;
+use carom_dynamics::collision::{Obstacles, Returns};
 use carom_dynamics::contacts::Contacts;
 use carom_dynamics::counters::Counters;
 use carom_dynamics::effects::drag::Drag;
@@ -59,12 +59,14 @@ fn r02_detection_determination_and_response_one_after_the_other() {
     // Determination: when, and where.
     let mut obstacles = Obstacles::new(&plan, 0.25, &start, &plan.constant_acceleration(&plan.balls()[0]));
     let none = Contacts::new();
-    let returns = obstacles.returns(&step, &none, &mut counters);
+    let mut returns = Returns::new();
+    obstacles.returns(&step, &none, &mut returns, &mut counters);
     let hit = obstacles.earliest(&step, &none, &returns, &mut counters).unwrap();
     assert_eq!((hit.f, hit.surface), (before / (before - after), 0));
     let there = step.at(hit.f);
-    let mut touched =
-        obstacles.touching(&there.position, &there.velocity, touch_distance(1.25, 1.5), None, &mut counters);
+    let mut touched = Contacts::new();
+    let tolerance = touch_distance(1.25, 1.5);
+    obstacles.touching(&there.position, &there.velocity, tolerance, None, &mut touched, &mut counters);
     assert_eq!(touched.len(), 1);
 
     // Response: which velocity.

@@ -1,8 +1,8 @@
 //! One ball among surfaces of which everything is known: which it meets first, where it leaves what it touches, and in how much doubt.
 
 use carom_dynamics::body::State;
-use carom_dynamics::collision::Obstacles;
-use carom_dynamics::contacts::{Contact, MAX_CONTACTS};
+use carom_dynamics::collision::{Obstacles, Returns};
+use carom_dynamics::contacts::{Contact, Contacts, MAX_CONTACTS};
 use carom_dynamics::counters::Counters;
 use carom_dynamics::events::Motion;
 use carom_dynamics::integrators::{Step, euler, exact};
@@ -45,12 +45,14 @@ fn h10_of_surfaces_met_at_once_the_first_by_name_is_hit() {
         let plan = floors.ball([0.0, 0.0, 2.0], [0.0; 3], RADIUS).plan();
         let (step, mut counters) = (line([0.0, 0.0, 1.0], [0.0, 0.0, -1.0]), Counters::default());
         let mut at = obstacles(&plan, &step);
-        let returns = at.returns(&step, &[], &mut counters);
+        let mut returns = Returns::new();
+        at.returns(&step, &[], &mut returns, &mut counters);
         let hit = at.earliest(&step, &[], &returns, &mut counters).unwrap();
         assert_eq!((hit.f, hit.surface, hit.rate, counters.clearances), (0.5, first, Some(-1.0), 2));
         // Known contacts are asked when they are entered again, and not once more.
-        let touching = at.touching(&Point3::new(0.0, 0.0, 0.5), &Vector3::z(), 0.0, None, &mut counters);
-        at.returns(&step, &touching, &mut counters);
+        let mut touching = Contacts::new();
+        at.touching(&Point3::new(0.0, 0.0, 0.5), &Vector3::z(), 0.0, None, &mut touching, &mut counters);
+        at.returns(&step, &touching, &mut returns, &mut counters);
         assert_eq!((touching.len(), counters.clearances), (1, 3), "one normal is one contact");
     }
 }
@@ -83,7 +85,8 @@ fn the_doubt_of_a_hit_grows_with_its_face_and_the_way_to_it() {
     let plan = stage(vertices, faces);
     let (step, mut counters) = (line([0.5, -0.5, 3.0], [0.0, 0.0, -2.0]), Counters::default());
     let mut at = obstacles(&plan, &step);
-    let returns = at.returns(&step, &[], &mut counters);
+    let mut returns = Returns::new();
+    at.returns(&step, &[], &mut returns, &mut counters);
     let hit = at.earliest(&step, &[], &returns, &mut counters).unwrap();
     assert_eq!((hit.f, hit.face), (0.75, Some(2)));
     // The farthest coordinate of the face from the start is 2, and the way is 1.5.
@@ -127,7 +130,8 @@ fn r28_a_ball_that_leaves_an_edge_along_a_curve_is_back_on_time() {
         let step = Step { path, velocity: [v1, v2, v3, v4, Vector3::zeros()], seconds: 1.0, to: 1.0, exact: true };
         let leaving = Contact { rate: v, ..resting(Site::Edge { face: 0, edge: 0 }, Vector3::z()) };
         let (mut at, mut counters) = (obstacles(&plan, &step), Counters::default());
-        let returns = at.returns(&step, &[leaving], &mut counters);
+        let mut returns = Returns::new();
+        at.returns(&step, &[leaving], &mut returns, &mut counters);
         let hit = at.earliest(&step, &[leaving], &returns, &mut counters).map(|hit| hit.f);
         let early = hit.map(|f| (back - f) * (1.0 + 2.0 * back + 3.0 * d * back.powi(2) + 4.0 * e * back.powi(3) - v));
         assert!(counters.clearances > 1, "what is asked of the way off the edge is counted");
@@ -142,7 +146,8 @@ fn plane(surface: usize, normal: Vector3<f64>, rate: f64) -> Contact {
 /// What the ball hits along `step`, having `contacts` where it begins.
 fn first_hit(plan: &Plan, step: &Step, contacts: &[Contact]) -> Option<(f64, usize)> {
     let (mut at, mut counters) = (obstacles(plan, step), Counters::default());
-    let returns = at.returns(step, contacts, &mut counters);
+    let mut returns = Returns::new();
+    at.returns(step, contacts, &mut returns, &mut counters);
     at.earliest(step, contacts, &returns, &mut counters).map(|hit| (hit.f, hit.surface))
 }
 
@@ -208,13 +213,9 @@ fn h01_what_is_left_along_itself_is_not_hit_at_once_whatever_the_rounding() {
             let n = out.normalize();
             let x = at(place, n);
             let state = State { position: x, velocity: Vector3::zeros() };
-            let touched = Obstacles::new(&plan, RADIUS, &state, &n).touching(
-                &x,
-                &Vector3::zeros(),
-                contact_doubt(4.0),
-                None,
-                &mut Counters::default(),
-            );
+            let (mut touched, mut counters) = (Contacts::new(), Counters::default());
+            let at = Obstacles::new(&plan, RADIUS, &state, &n);
+            at.touching(&x, &Vector3::zeros(), contact_doubt(4.0), None, &mut touched, &mut counters);
             let [contact] = touched[..] else { panic!("{touched:?} at {x}") };
             let across = n.cross(&Vector3::x()).normalize();
             let v = across * c + n.cross(&across) * s;
@@ -243,7 +244,8 @@ fn a_path_that_does_not_begin_with_the_velocity_leaves_at_its_own_slope() {
         let step = euler::semi_implicit(&state, Vector3::z() * -g, 0.25);
         let (mut at, mut counters) = (obstacles(&plan, &step), Counters::default());
         let leaving = [plane(0, Vector3::z(), 4.0)];
-        let returns = at.returns(&step, &leaving, &mut counters);
+        let mut returns = Returns::new();
+        at.returns(&step, &leaving, &mut returns, &mut counters);
         let hit = at.earliest(&step, &leaving, &returns, &mut counters);
         assert_eq!(hit.map(|hit| (hit.f, hit.rate.unwrap())), expected, "g = {g}");
     }
@@ -256,13 +258,9 @@ fn contacts_are_one_where_the_tolerance_makes_their_normals_so_and_eight_at_most
     let touched = |stage: Stage| {
         let plan = stage.ball([0.0, 0.0, 2.0], [0.0; 3], RADIUS).plan();
         let step = line([0.0, 0.0, RADIUS], [0.0; 3]);
-        obstacles(&plan, &step).touching(
-            &step.path.start(),
-            &Vector3::zeros(),
-            tolerance,
-            None,
-            &mut Counters::default(),
-        )
+        let (start, still, mut touched) = (step.path.start(), Vector3::zeros(), Contacts::new());
+        obstacles(&plan, &step).touching(&start, &still, tolerance, None, &mut touched, &mut Counters::default());
+        touched
     };
     let sharp = |x: f64| [[x, -4.0, 0.0], [x, 4.0, 0.0], [x, 0.0, -4.0]].map(Point3::from).to_vec();
     let blade = |stage: Stage, name: &str, x: f64| stage.mesh(name, smooth(1.0), sharp(x), vec![[0, 1, 2]]);

@@ -52,6 +52,15 @@ impl FacingPlane {
     fn clearance(&self, x: &Point3<f64>, radius: f64) -> f64 {
         self.normal.dot(&(x - self.point)) - radius
     }
+
+    /// Where `step` enters it first, for a ball of `radius`, before `to` or at it; of what comes later, only that there is nothing before.
+    #[inline(never)]
+    fn entry(&self, step: &Step, radius: f64, to: f64) -> Entry {
+        let gap = self.clearance(&step.path.start(), radius);
+        let clearance = step.path.clearance(gap, &self.normal);
+        // Most planes are too far away, or the ball flies away from them.
+        if gap > -2.0 * clearance.fall(to) { Entry::Never } else { clearance.first_entry(0.0, step.to) }
+    }
 }
 
 /// Whether a centre that starts on a plane of normal `n`, with acceleration `a`, is behind it: on the side it moves to or, where it moves along the plane
@@ -60,6 +69,11 @@ fn is_behind(n: &Vector3<f64>, state: &State, a: &Vector3<f64>) -> bool {
     let heading = n.dot(&state.velocity);
     let along = heading.abs() <= rate_rounding(state.velocity.norm());
     (if along { -n.dot(a) } else { heading }) < 0.0
+}
+
+/// The contact with `site` of `surface`, at `normal`, of a ball that moves with `velocity`.
+fn contact_with(surface: usize, site: Option<Site>, normal: Vector3<f64>, velocity: &Vector3<f64>) -> Contact {
+    Contact { surface, site, normal, rate: normal.dot(velocity), lasting: false }
 }
 
 /// One ball among the surfaces of a plan.
@@ -131,6 +145,7 @@ impl<'a> Obstacles<'a> {
     }
 
     /// The earliest collision of the step: over all surfaces, the smallest f at which the clearance is <= 0 and falling.
+    #[inline(always)]
     pub fn earliest(
         &mut self,
         step: &Step,
@@ -138,34 +153,58 @@ impl<'a> Obstacles<'a> {
         returns: &Returns,
         counters: &mut Counters,
     ) -> Option<Hit> {
-        // Ties go by name, so that the order of the surfaces does not matter.
+        let hit = self.earliest_plane(step, contacts, returns, counters);
+        if self.plan.meshes.is_empty() { hit } else { self.earliest_face(hit, step, contacts, returns, counters) }
+    }
+
+    /// Whether what is found at `f` on `surface` comes before `than`: ties go by name, so that the order of the surfaces does not matter.
+    fn is_earlier(&self, f: f64, surface: usize, than: Option<(f64, usize)>) -> bool {
         let rank = |surface: usize| self.plan.surfaces[surface].rank;
-        let earlier = |f: f64, surface: usize, than: &Option<Hit>| {
-            than.is_none_or(|hit| f < hit.f || (f == hit.f && rank(surface) < rank(hit.surface)))
-        };
-        let mut earliest: Option<Hit> = None;
+        than.is_none_or(|(first, other)| f < first || (f == first && rank(surface) < rank(other)))
+    }
+
+    /// The earliest collision of the step with a plane.
+    #[inline(always)]
+    fn earliest_plane(
+        &self,
+        step: &Step,
+        contacts: &[Contact],
+        returns: &Returns,
+        counters: &mut Counters,
+    ) -> Option<Hit> {
+        // The f, and the surface; and how fast it closes there.
+        let (mut earliest, mut closing) = (None, 0.0);
         for facing in &self.planes {
             let surface = facing.surface;
-            let known = contacts.iter().position(|c| c.surface == surface);
+            let known = contacts.iter().zip(returns).find(|(c, _)| c.surface == surface);
             let entry = match known {
-                Some(i) => returns[i],
+                Some((_, back)) => *back,
                 None => {
                     counters.clearances += 1;
-                    let gap = facing.clearance(&step.path.start(), self.radius);
-                    step.path.clearance(gap, &facing.normal).first_entry(0.0, step.to)
+                    facing.entry(step, self.radius, earliest.map_or(step.to, |(f, _)| f))
                 }
             };
             if let Entry::At { f, rate } = entry
-                && earlier(f, surface, &earliest)
+                && self.is_earlier(f, surface, earliest)
             {
-                earliest = Some(Hit { f, surface, face: None, rate: Some(rate) });
+                (earliest, closing) = (Some((f, surface)), rate);
             }
         }
-        if self.plan.meshes.is_empty() {
-            return earliest;
-        }
+        earliest.map(|(f, surface)| Hit { f, surface, face: None, rate: Some(closing) })
+    }
+
+    /// The earliest collision of the step, with `earliest` or with a face before that.
+    #[inline(never)]
+    fn earliest_face(
+        &mut self,
+        mut earliest: Option<Hit>,
+        step: &Step,
+        contacts: &[Contact],
+        returns: &Returns,
+        counters: &mut Counters,
+    ) -> Option<Hit> {
         let mut holds = self.holds(step, contacts, returns);
-        for ((surface, mesh), around) in self.plan.meshes.iter().zip(&mut self.around) {
+        for (i, (surface, mesh)) in self.plan.meshes.iter().enumerate() {
             for (contact, hold) in contacts.iter().zip(&mut holds) {
                 hold.face = contact.site.filter(|_| contact.surface == *surface).map(|site| site.face());
             }
@@ -178,11 +217,11 @@ impl<'a> Obstacles<'a> {
                 on_it.map(|(contact, back)| Departure::new(step, contact, back, mesh, ball.radius)).collect();
             let free_until =
                 |face: u32| departures.iter().map(|departure| departure.free_until(face, &asked)).fold(0.0, f64::max);
-            let found = mesh.first_contact_around(&ball, to, free_until, around, &mut work);
+            let found = mesh.first_contact_around(&ball, to, free_until, &mut self.around[i], &mut work);
             counters.add(&work);
             counters.clearances += asked.get();
             if let Some(found) = found
-                && earlier(found.f, *surface, &earliest)
+                && self.is_earlier(found.f, *surface, earliest.map(|hit| (hit.f, hit.surface)))
             {
                 earliest = Some(Hit { f: found.f, surface: *surface, face: Some(found.face), rate: None });
             }
@@ -192,7 +231,7 @@ impl<'a> Obstacles<'a> {
 
     /// How far from touching the ball may be at `hit`, by the rounding of the search that found it: it grows with the face.
     pub fn doubt(&self, step: &Step, hit: &Hit) -> f64 {
-        let Some((face, mesh)) = hit.face.zip(self.mesh(hit.surface)) else { return 0.0 };
+        let Some((face, mesh)) = hit.face.and_then(|face| Some((face, self.mesh(hit.surface)?))) else { return 0.0 };
         let corners = mesh.triangle(face).map(|v| (v - step.path.start()).amax());
         let size = corners.into_iter().fold(self.mesh_radius, f64::max);
         contact_doubt(size + step.path.reach(hit.f))
@@ -202,13 +241,10 @@ impl<'a> Obstacles<'a> {
     pub fn seen(&self, hit: &Hit, position: &Point3<f64>, velocity: &Vector3<f64>) -> Option<Contact> {
         let (face, mesh) = hit.face.zip(self.mesh(hit.surface))?;
         let touch = mesh.nearest_of(face, position)?;
-        let rate = touch.normal.dot(velocity);
-        let contact =
-            Contact { surface: hit.surface, site: Some(touch.site), normal: touch.normal, rate, lasting: false };
-        (rate < 0.0).then_some(contact)
+        Some(contact_with(hit.surface, Some(touch.site), touch.normal, velocity)).filter(|contact| contact.rate < 0.0)
     }
 
-    /// The contacts of a ball at `position` with `velocity`, to within `tolerance` (m), each with its rate n.v. If that is where it is at
+    /// Makes `touched` the contacts of a ball at `position` with `velocity`, to within `tolerance` (m), each with its rate n.v. If that is where it is at
     /// `f` of the step that the [`earliest`](Self::earliest) hit was asked for, they need not be looked for again.
     ///
     /// Of contacts whose normals are one to within what the tolerance makes of them, the one that closes fastest stays.
@@ -218,21 +254,34 @@ impl<'a> Obstacles<'a> {
         velocity: &Vector3<f64>,
         tolerance: f64,
         f: Option<f64>,
+        touched: &mut Contacts,
         counters: &mut Counters,
-    ) -> Contacts {
-        let contact = |surface, site, normal: Vector3<f64>| Contact {
-            surface,
-            site,
-            normal,
-            rate: normal.dot(velocity),
-            lasting: false,
-        };
-        let mut all = Contacts::new();
+    ) {
+        touched.clear();
         for facing in &self.planes {
             if facing.clearance(position, self.radius) <= tolerance {
-                all.push(contact(facing.surface, None, facing.normal));
+                touched.push(contact_with(facing.surface, None, facing.normal, velocity));
             }
         }
+        if !self.plan.meshes.is_empty() {
+            self.touch_faces(position, velocity, tolerance, f, touched, counters);
+        }
+        if touched.len() > 1 {
+            self.merge(touched, tolerance);
+        }
+    }
+
+    /// Adds what a ball at `position` with `velocity` touches of the meshes, as [`touching`](Self::touching) is asked for it.
+    #[inline(never)]
+    fn touch_faces(
+        &self,
+        position: &Point3<f64>,
+        velocity: &Vector3<f64>,
+        tolerance: f64,
+        f: Option<f64>,
+        touched: &mut Contacts,
+        counters: &mut Counters,
+    ) {
         for ((surface, mesh), around) in self.plan.meshes.iter().zip(&self.around) {
             let mut work = Work::default();
             let touches = match f {
@@ -240,17 +289,14 @@ impl<'a> Obstacles<'a> {
                 None => mesh.touches(position, velocity, self.mesh_radius, tolerance, &mut work),
             };
             for touch in touches {
-                all.push(contact(*surface, Some(touch.site), touch.normal));
+                touched.push(contact_with(*surface, Some(touch.site), touch.normal, velocity));
             }
             counters.add(&work);
         }
-        if all.len() > 1 {
-            self.merge(&mut all, tolerance);
-        }
-        all
     }
 
     /// Of contacts whose normals are one, that which closes fastest; then in order.
+    #[inline(never)]
     fn merge(&self, contacts: &mut Contacts, tolerance: f64) {
         contacts.sort_by(|a, b| a.rate.total_cmp(&b.rate).then_with(|| self.order(a, b)));
         let mut kept = 0;
@@ -282,7 +328,8 @@ impl<'a> Obstacles<'a> {
         counters: &mut Counters,
     ) -> Point3<f64> {
         let State { mut position, velocity } = *state;
-        let touched = self.touching(&position, &velocity, tolerance, None, counters);
+        let mut touched = Contacts::new();
+        self.touching(&position, &velocity, tolerance, None, &mut touched, counters);
         for contact in touched.iter().filter(|c| c.site.is_some() && self.bend(c) == Bend::Flat) {
             let Some(gap) = self.gap(contact, &position) else { continue };
             // Of a face, the height is never below 0: it is seen from where the point is.
@@ -302,15 +349,19 @@ impl<'a> Obstacles<'a> {
     /// The distance that is left between the ball at `position` and what it is in contact with.
     pub fn gap(&self, contact: &Contact, position: &Point3<f64>) -> Option<f64> {
         match contact.site {
-            Some(site) => {
-                let (foot, _) = self.mesh(contact.surface)?.foot(site, position)?;
-                Some((position - foot).norm() - self.mesh_radius)
-            }
+            Some(site) => self.gap_at(contact.surface, site, position),
             None => {
                 let facing = self.planes.iter().find(|p| p.surface == contact.surface)?;
                 Some(facing.clearance(position, self.radius))
             }
         }
+    }
+
+    /// The same for `site` of the mesh that `surface` is.
+    #[inline(never)]
+    fn gap_at(&self, surface: usize, site: Site, position: &Point3<f64>) -> Option<f64> {
+        let (foot, _) = self.mesh(surface)?.foot(site, position)?;
+        Some((position - foot).norm() - self.mesh_radius)
     }
 
     /// Whether `next` continues the plane of `contact` to the bit: moving on it, nothing changes there.

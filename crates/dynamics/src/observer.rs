@@ -94,12 +94,21 @@ pub trait Observer {
 
     /// The ball moved; segments come in order of time and leave no gap.
     fn segment(&mut self, segment: &Segment);
+
+    /// Whether it looks at events: if not, they come without their bounds, which nobody need compute.
+    fn looks_at_events(&self) -> bool {
+        true
+    }
 }
 
 /// A watcher that does not look.
 impl Observer for () {
     fn event(&mut self, _: &Event) {}
     fn segment(&mut self, _: &Segment) {}
+
+    fn looks_at_events(&self) -> bool {
+        false
+    }
 }
 
 /// A watcher that is kept elsewhere, or is not known by its type: `&mut dyn Observer` watches too.
@@ -110,6 +119,10 @@ impl<O: Observer + ?Sized> Observer for &mut O {
 
     fn segment(&mut self, segment: &Segment) {
         (**self).segment(segment);
+    }
+
+    fn looks_at_events(&self) -> bool {
+        (**self).looks_at_events()
     }
 }
 
@@ -123,6 +136,10 @@ impl<A: Observer, B: Observer> Observer for (A, B) {
     fn segment(&mut self, segment: &Segment) {
         self.0.segment(segment);
         self.1.segment(segment);
+    }
+
+    fn looks_at_events(&self) -> bool {
+        self.0.looks_at_events() || self.1.looks_at_events()
     }
 }
 
@@ -138,6 +155,10 @@ impl<A: Observer> Observer for Option<A> {
         if let Some(observer) = self {
             observer.segment(segment);
         }
+    }
+
+    fn looks_at_events(&self) -> bool {
+        self.as_ref().is_some_and(Observer::looks_at_events)
     }
 }
 
@@ -283,5 +304,9 @@ impl Observer for FrameSampler {
             let (state, spin) = (segment.at(time), segment.spin_at(time));
             self.frames.push(Frame { time, state, motion: segment.motion, spin });
         }
+    }
+
+    fn looks_at_events(&self) -> bool {
+        false
     }
 }

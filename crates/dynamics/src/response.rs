@@ -62,14 +62,17 @@ fn respond_to_one(
     if has > had || (c_r == 1.0 && *friction == Friction::None) {
         after *= (had / has).sqrt();
     }
-    let drives = |(i, c): (usize, &Contact)| i != hit && changed_rate(c, &v, &after) < 0.0;
-    if contacts.iter().enumerate().any(drives) {
-        return None;
+    if contacts.len() > 1 {
+        let drives = |(i, c): (usize, &Contact)| i != hit && changed_rate(c, &v, &after) < 0.0;
+        if contacts.iter().enumerate().any(drives) {
+            return None;
+        }
+        for contact in contacts.iter_mut() {
+            contact.rate = changed_rate(contact, &v, &after);
+        }
     }
     counters.restitution += 1;
-    for (i, contact) in contacts.iter_mut().enumerate() {
-        contact.rate = if i == hit { rebound } else { changed_rate(contact, &v, &after) };
-    }
+    contacts[hit].rate = rebound;
     Some(after)
 }
 

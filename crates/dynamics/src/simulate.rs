@@ -29,6 +29,7 @@ use crate::tolerance::{
 };
 use carom_geometry::bounds::amax;
 use nalgebra::Vector3;
+use settling::Lowness;
 use spin::Slip;
 
 /// Simulates one ball of `plan` to the end and shows it to `observer`.
@@ -80,7 +81,8 @@ pub fn simulate(plan: &Plan, ball: &Ball, observer: &mut impl Observer) -> Outco
         integrator: plan.integrator(&forces),
         state: start,
         clock: Clock::start(),
-        contacts: Contacts::new(),
+        contacts: &mut Contacts::new(),
+        before: &mut Contacts::new(),
         motion: Motion::Flying,
         settling: None,
         slider: Adaptive::new(SLIDING_TOLERANCE),
@@ -90,6 +92,7 @@ pub fn simulate(plan: &Plan, ball: &Ball, observer: &mut impl Observer) -> Outco
         moved: 0.0,
         bound: None,
         low_hops: 0,
+        lowness: Lowness::under(&a, &plan.rest),
         halvings: 0,
         events: 0,
         ending: None,
@@ -144,7 +147,9 @@ struct Walk<'a, O> {
     integrator: Integrator,
     state: State,
     clock: Clock,
-    contacts: Contacts,
+    contacts: &'a mut Contacts,
+    /// What it left to get to them, of use only on arrival.
+    before: &'a mut Contacts,
     motion: Motion,
     settling: Option<Settling>,
     /// Integrates what slides on planes on no straight line.
@@ -161,6 +166,8 @@ struct Walk<'a, O> {
     bound: Option<Bound>,
     /// Impacts in a row after which no hop was high.
     low_hops: u32,
+    /// Which hops are.
+    lowness: Lowness,
     /// How often the timestep is halved because the path closes where the ball does not.
     halvings: u32,
     events: u64,
@@ -205,6 +212,15 @@ impl<O: Observer> Walk<'_, O> {
             self.moved = end;
             return;
         }
+        self.stand_still();
+    }
+
+    /// Counts what takes no time to speak of.
+    #[inline(never)]
+    fn stand_still(&mut self) {
+        if self.standstill == 0 {
+            self.answered.clone_from(self.contacts);
+        }
         self.standstill += 1;
         if self.standstill > MAX_STANDSTILL {
             self.give_up(Ending::UnresolvedContact, EventKind::UnresolvedContact);
@@ -213,8 +229,8 @@ impl<O: Observer> Walk<'_, O> {
 
     /// Whether `step` is none because a number in it is not finite, or because the ball is out of range; ends its simulation if so.
     fn diverges(&mut self, step: &Step) -> bool {
-        let reached = amax(&self.state.position.coords).max(amax(&self.state.velocity));
-        let diverges = !step.is_finite() || reached > FARTHEST;
+        let State { position, velocity } = &self.state;
+        let diverges = !step.is_finite() || amax(&position.coords) > FARTHEST || amax(velocity) > FARTHEST;
         if diverges {
             self.give_up(Ending::Diverged, EventKind::Diverged);
         }
@@ -231,6 +247,7 @@ impl<O: Observer> Walk<'_, O> {
     }
 
     /// Ends the simulation of this ball by a guard, and says so where it is in contact.
+    #[inline(never)]
     fn give_up(&mut self, ending: Ending, kind: EventKind) {
         self.ending = Some(ending);
         self.bound = None;

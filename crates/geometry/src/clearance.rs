@@ -94,12 +94,20 @@ impl Clearance {
         (12.0 * c4 * f + 6.0 * c3) * f + 2.0 * c2
     }
 
+    /// How the clearance may change over [0, `to`], `to` >= 0, but for rounding: it falls by no more than this, which is not positive.
+    #[inline]
+    pub fn fall(&self, to: f64) -> f64 {
+        let falling = |c: f64| if c < 0.0 { c } else { 0.0 };
+        let [_, c1, c2, c3, c4] = self.c;
+        (((falling(c4) * to + falling(c3)) * to + falling(c2)) * to + falling(c1)) * to
+    }
+
     /// The first f in [`from`, `to`] where the clearance is <= 0 and falling.
     ///
     /// Lines and parabolas are solved in closed form, to a few units of roundoff; higher degrees to the last bit of f that
     /// the rounded coefficients determine, on the early side. A parabola that touches 0 from above without crossing is
     /// reported as a touch (`rate` 0).
-    #[inline]
+    #[inline(always)]
     pub fn first_entry(&self, from: f64, to: f64) -> Entry {
         if from > to {
             return Entry::Never;
@@ -124,7 +132,7 @@ impl Clearance {
 }
 
 /// The first f >= 0 where c + b f + a f^2 is <= 0 and falling.
-#[inline]
+#[inline(always)]
 fn quadratic_entry(c: f64, b: f64, a: f64) -> Entry {
     if c <= 0.0 {
         if b < 0.0 {
@@ -251,6 +259,18 @@ mod tests {
         assert_eq!(entry([0.0, 3.0, -4.0, 0.0, 0.0], 0.0, 1.0), Some((0.75, -3.0)));
         // Overlapping, separating, but turning before it is free: there.
         assert_eq!(entry([-1.0, 1.0, -1.0, 0.0, 0.0], 0.0, 1.0), Some((0.5, 0.0)));
+    }
+
+    #[test]
+    fn no_clearance_falls_farther_than_it_may() {
+        for c in [[5.0, -1.0, 0.5, -2.0, 0.25], [0.0, 1.0, -3.0, 1.0, -1.0], [1.0, 2.0, 3.0, 4.0, 5.0]] {
+            let clearance = Clearance::new(c);
+            for f in (0..=16).map(|i| f64::from(i) / 16.0) {
+                assert!(clearance.at(f) - c[0] >= clearance.fall(f), "{c:?} at {f}");
+            }
+        }
+        assert_eq!(Clearance::new([1.0, -2.0, -3.0, 4.0, 5.0]).fall(0.5), -1.75);
+        assert_eq!(Clearance::new([1.0, 2.0, 3.0, 4.0, 5.0]).fall(1.0), 0.0);
     }
 
     #[test]

@@ -67,6 +67,12 @@ impl Path {
         self.start
     }
 
+    /// How many Taylor terms the path has.
+    #[inline]
+    pub fn degree(&self) -> usize {
+        self.degree
+    }
+
     /// The Taylor terms at the start, as many as the degree.
     #[inline]
     pub fn terms(&self) -> &[Vector3<f64>] {

@@ -23,6 +23,7 @@ fn until(back: &Entry) -> f64 {
 
 /// The clearance from a contact along the step: 0 now by definition, and its slope the contact's own rate (plus what a path that
 /// does not begin with the velocity adds).
+#[inline(always)]
 fn leaving(step: &Step, contact: &Contact) -> Clearance {
     let mut c = [0.0, contact.rate * step.seconds, 0.0, 0.0, 0.0];
     // What the ball moves along, it leaves or enters by more than rounding or not at all.
@@ -130,9 +131,10 @@ impl<'a> Departure<'a> {
 }
 
 impl Obstacles<'_> {
-    /// When the path of `step` returns to each of `contacts`; never to a lasting one, along which it moves.
-    pub fn returns(&self, step: &Step, contacts: &[Contact], counters: &mut Counters) -> Returns {
-        let mut returns = Returns::new();
+    /// Makes `returns` when the path of `step` returns to each of `contacts`; never to a lasting one, along which it moves.
+    #[inline(always)]
+    pub fn returns(&self, step: &Step, contacts: &[Contact], returns: &mut Returns, counters: &mut Counters) {
+        returns.clear();
         for contact in contacts {
             returns.push(if contact.lasting {
                 Entry::Never
@@ -141,7 +143,6 @@ impl Obstacles<'_> {
                 leaving(step, contact).first_entry(0.0, step.to)
             });
         }
-        returns
     }
 
     /// `contacts`, to which `step` comes back by `returns`, as the search of a mesh needs them; `face` is left to that mesh.

@@ -20,7 +20,7 @@ use nalgebra::Vector3;
 pub struct Step {
     /// The centre's path; f = 1 is `seconds` after the start.
     pub path: Path,
-    /// The velocity v(f) = v0 + v1 f + v2 f^2 ..., in m/s.
+    /// The velocity v(f) = v0 + v1 f + v2 f^2 ..., in m/s; of a path with two terms at most, it has two as well.
     pub velocity: [Vector3<f64>; MAX_DEGREE + 1],
     /// The time from f = 0 to f = 1, in s.
     pub seconds: f64,
@@ -107,19 +107,20 @@ impl Step {
     /// Position and velocity at `f`.
     #[inline]
     pub fn at(&self, f: f64) -> State {
-        let [v0, v1, v2, v3, v4] = self.velocity;
-        // The velocity has no terms beyond those of the path.
-        let further = if self.path.terms().len() <= 2 { v2 } else { (v4 * f + v3) * f + v2 };
+        let [v0, v1, v2, v3, v4] = &self.velocity;
+        let further = if self.path.degree() <= 2 { Vector3::zeros() } else { (v4 * f + v3) * f + v2 };
         let velocity = (further * f + v1) * f + v0;
         State { position: self.path.at(f), velocity }
     }
 
     /// The state at the end of the step.
+    #[inline]
     pub fn end(&self) -> State {
         self.at(self.to)
     }
 
     /// Whether the path, the velocity and their reach over the whole step are finite: what is no number in any of their terms is none at the end.
+    #[inline]
     pub fn is_finite(&self) -> bool {
         let State { position, velocity } = self.end();
         // A maximum passes over what is no number; a sum does not, not even of infinities that differ in sign.

@@ -3,7 +3,7 @@
 use super::Walk;
 use crate::body::State;
 use crate::collision::{Hit, Returns};
-use crate::contacts::{Contact, Contacts, MAX_CONTACTS};
+use crate::contacts::{Contact, MAX_CONTACTS};
 use crate::events::{Bound, Ending, EventKind, Motion};
 use crate::integrators::Step;
 use crate::observer::Observer;
@@ -48,8 +48,9 @@ impl<O: Observer> Walk<'_, O> {
         if self.is_unstable(&step) || self.diverges(&step) {
             return;
         }
-        let returns = self.obstacles.returns(&step, &self.contacts, &mut self.counters);
-        let hit = self.obstacles.earliest(&step, &self.contacts, &returns, &mut self.counters);
+        let mut returns = Returns::new();
+        self.obstacles.returns(&step, self.contacts, &mut returns, &mut self.counters);
+        let hit = self.obstacles.earliest(&step, self.contacts, &returns, &mut self.counters);
         match hit {
             None => {
                 let whole = timestep == remaining && step.time(step.to) >= remaining;
@@ -98,20 +99,19 @@ impl<O: Observer> Walk<'_, O> {
             self.state.position = self.obstacles.clear_of_faces(&self.state, &a, tolerance, &mut self.counters);
         }
         let State { position, velocity } = self.state;
-        let mut contacts = self.obstacles.touching(&position, &velocity, tolerance, None, &mut self.counters);
+        self.obstacles.touching(&position, &velocity, tolerance, None, self.contacts, &mut self.counters);
         let rounding = rate_rounding(velocity.norm());
-        contacts.retain(|c| {
+        self.contacts.retain(|c| {
             let gap = self.obstacles.gap(c, &position);
             c.rate.abs() <= rounding && gap.is_some_and(|gap| gap.abs() <= tolerance)
         });
-        if contacts.is_empty() {
+        if self.contacts.is_empty() {
             return;
         }
-        for contact in &mut contacts {
-            contact.rate = 0.0;
-            self.correct(contact, tolerance);
+        for i in 0..self.contacts.len() {
+            self.contacts[i].rate = 0.0;
+            self.correct(i, tolerance);
         }
-        self.contacts = contacts;
         self.bound = Some(Bound { time: 0.0, position: tolerance });
         self.settle(None);
     }
@@ -119,33 +119,25 @@ impl<O: Observer> Walk<'_, O> {
     /// At a collision: what is touched, how fast, and the answer.
     pub(super) fn arrive(&mut self, step: &Step, hit: Hit, returns: &Returns) {
         let tolerance = self.touch_tolerance(step.path.reach(hit.f)).max(self.obstacles.doubt(step, &hit));
-        let before = std::mem::take(&mut self.contacts);
+        std::mem::swap(&mut self.contacts, &mut self.before);
         let State { position, velocity } = self.state;
-        // What slides is put back onto its surface, and is then elsewhere.
-        let f = (position == step.path.at(hit.f)).then_some(hit.f);
-        let mut contacts = self.obstacles.touching(&position, &velocity, tolerance, f, &mut self.counters);
-        for contact in &mut contacts {
-            self.correct(contact, tolerance);
-            contact.rate = self.rate(step, hit, contact, &before, returns);
+        // What slides is put back onto its surface, and is then elsewhere; and only of meshes it matters where.
+        let f = (!self.plan.meshes.is_empty() && position == step.path.at(hit.f)).then_some(hit.f);
+        self.obstacles.touching(&position, &velocity, tolerance, f, self.contacts, &mut self.counters);
+        for i in 0..self.contacts.len() {
+            self.correct(i, tolerance);
+            self.contacts[i].rate = self.rate(step, hit, &self.contacts[i], returns);
         }
-        if self.standstill > 0 && contacts.iter().all(|c| c.rate >= 0.0) {
-            // No time passes, and what is nearest to the ball is left, but by less than rounding: the search has seen its neighbour, to which the ball
-            // comes nearer (the vertex at the end of an edge, the face beyond a shallow fold). Either is touched; the one that closes is answered, or
-            // it would be found for ever.
-            let place = |c: &Contact| (c.surface, c.site);
-            let seen = self.obstacles.seen(&hit, &self.state.position, &velocity);
-            if let Some(seen) = seen.filter(|seen| contacts.iter().all(|c| place(c) != place(seen)))
-                && contacts.len() < MAX_CONTACTS
-            {
-                contacts.push(seen);
-                contacts.sort_by(|a, b| self.obstacles.order(a, b));
-            }
+        if self.standstill > 0 && self.contacts.iter().all(|c| c.rate >= 0.0) {
+            self.add_seen(&hit, &velocity);
         }
-        self.bound = self.bound(step, &hit, tolerance, &contacts);
-        let collapses = self.collapses(&mut contacts, tolerance);
-        let carrier = before.iter().find(|b| b.lasting).copied();
+        if self.observer.looks_at_events() {
+            self.bound = self.bound(step, &hit, tolerance);
+        }
+        let collapses = self.standstill > 0 && self.collapses(tolerance);
+        let carrier = self.before.iter().find(|b| b.lasting).copied();
         let mut closing = Closing::default();
-        for (i, contact) in contacts.iter().enumerate().filter(|(_, c)| c.rate < 0.0) {
+        for (i, contact) in self.contacts.iter().enumerate().filter(|(_, c)| c.rate < 0.0) {
             if closing == Closing::default() && step.exact {
                 // The normal speed is known better from the clearance than from the velocity.
                 let n = contact.normal;
@@ -158,25 +150,26 @@ impl<O: Observer> Walk<'_, O> {
             let surfaces = self.surfaces;
             let velocity_in = self.state.velocity;
             self.state.velocity = if collapses {
-                collapse(velocity_in, &mut contacts)
+                collapse(velocity_in, self.contacts)
             } else {
-                respond(velocity_in, &mut contacts, |c| &surfaces[c.surface].material, &mut self.counters)
+                respond(velocity_in, self.contacts, |c| &surfaces[c.surface].material, &mut self.counters)
             };
             if self.spins && !collapses {
-                self.grip(velocity_in, &mut contacts, closing);
+                self.grip(velocity_in, closing);
             }
             self.counters.impacts += 1;
             self.halvings = 0;
-            for (_, contact) in contacts.iter().enumerate().filter(|(i, _)| closing.has(*i)) {
-                self.tell(EventKind::Impact, contact, velocity_in);
+            for i in (0..self.contacts.len()).filter(|i| closing.has(*i)) {
+                let contact = self.contacts[i];
+                self.tell(EventKind::Impact, &contact, velocity_in);
             }
         }
         if carrier.is_some() {
-            let carried = |c: &Contact| before.iter().any(|b| b.lasting && b.surface == c.surface && b.site == c.site);
-            contacts.iter_mut().for_each(|c| c.lasting = carried(c) && c.rate == 0.0);
+            let carried =
+                |c: &Contact| self.before.iter().any(|b| b.lasting && b.surface == c.surface && b.site == c.site);
+            self.contacts.iter_mut().for_each(|c| c.lasting = carried(c) && c.rate == 0.0);
         }
-        self.contacts = contacts;
-        let carried = self.settle(carrier);
+        let carried = self.settle(carrier.as_ref());
         if !answered && !carried && (hit.f == 0.0 || !step.exact) {
             // The path closes where the ball does not: the hop is too short for this step.
             self.halvings += 1;
@@ -184,8 +177,24 @@ impl<O: Observer> Walk<'_, O> {
         }
     }
 
+    /// Where no time passes and all contacts are left, adds what the search that found `hit` has seen.
+    ///
+    /// What is nearest to the ball is left by less than rounding: the search has seen its neighbour, to which the ball comes nearer (the vertex at the end of an
+    /// edge, the face beyond a shallow fold). Either is touched; the one that closes is answered, or it would be found for ever.
+    #[inline(never)]
+    fn add_seen(&mut self, hit: &Hit, velocity: &Vector3<f64>) {
+        let place = |c: &Contact| (c.surface, c.site);
+        let seen = self.obstacles.seen(hit, &self.state.position, velocity);
+        if let Some(seen) = seen.filter(|seen| self.contacts.iter().all(|c| place(c) != place(seen)))
+            && self.contacts.len() < MAX_CONTACTS
+        {
+            self.contacts.push(seen);
+            self.contacts.sort_by(|a, b| self.obstacles.order(a, b));
+        }
+    }
+
     /// How far the time and the place of `hit` may be off, with contact found to `tolerance` (m); none if nothing closes there.
-    fn bound(&self, step: &Step, hit: &Hit, tolerance: f64, contacts: &[Contact]) -> Option<Bound> {
+    fn bound(&self, step: &Step, hit: &Hit, tolerance: f64) -> Option<Bound> {
         let doubt = tolerance.max(touch_distance(self.plan.farthest, step.path.reach(hit.f)));
         let velocity = step.path.derivative(hit.f) / step.seconds;
         let acceleration = step.path.second_derivative(hit.f) / (step.seconds * step.seconds);
@@ -194,7 +203,7 @@ impl<O: Observer> Walk<'_, O> {
             let bend = c.normal.dot(&acceleration).abs() + if across > 0.0 { across } else { 0.0 };
             impact_time_bound(doubt, -c.rate, bend)
         };
-        let closing = contacts.iter().filter(|c| c.rate < 0.0 && c.surface == hit.surface);
+        let closing = self.contacts.iter().filter(|c| c.rate < 0.0 && c.surface == hit.surface);
         Some(self.bound_of(&velocity, closing.map(time).reduce(f64::max)?, doubt))
     }
 
@@ -206,14 +215,11 @@ impl<O: Observer> Walk<'_, O> {
     }
 
     /// Whether contacts that lose energy have answered each other without time passing for so long that there is no end to it; then
-    /// `contacts` are all that took part.
-    fn collapses(&mut self, contacts: &mut Contacts, tolerance: f64) -> bool {
-        let radius = self.plan.radius_at_meshes(self.forces.ball);
-        if self.standstill == 0 {
-            self.answered.clear();
-        }
+    /// the contacts are all that took part.
+    #[inline(never)]
+    fn collapses(&mut self, tolerance: f64) -> bool {
         let place = |c: &Contact| (c.surface, c.site);
-        for c in contacts.iter() {
+        for c in self.contacts.iter() {
             if self.answered.len() < MAX_CONTACTS && self.answered.iter().all(|a| place(a) != place(c)) {
                 self.answered.push(*c);
             }
@@ -222,14 +228,15 @@ impl<O: Observer> Walk<'_, O> {
         if self.standstill < COLLAPSE_AFTER || !self.answered.iter().any(loses) {
             return false;
         }
+        let radius = self.plan.radius_at_meshes(self.forces.ball);
         for a in &self.answered {
             // Of what two faces of one plane answered, once.
             let apart = |c: &Contact| (a.normal - c.normal).norm_squared() > merge_angle_squared(tolerance, radius);
-            if contacts.len() < MAX_CONTACTS && contacts.iter().all(|c| place(a) != place(c) && apart(c)) {
-                contacts.push(Contact { rate: a.normal.dot(&self.state.velocity), lasting: false, ..*a });
+            if self.contacts.len() < MAX_CONTACTS && self.contacts.iter().all(|c| place(a) != place(c) && apart(c)) {
+                self.contacts.push(Contact { rate: a.normal.dot(&self.state.velocity), lasting: false, ..*a });
             }
         }
-        contacts.sort_by(|a, b| self.obstacles.order(a, b));
+        self.contacts.sort_by(|a, b| self.obstacles.order(a, b));
         true
     }
 
@@ -241,8 +248,9 @@ impl<O: Observer> Walk<'_, O> {
         touch_distance(here + corners, travelled)
     }
 
-    /// Puts the centre back onto the surface it touches, within the rounding bound of its position (R15: explicit, bounded, counted).
-    pub(super) fn correct(&mut self, contact: &Contact, tolerance: f64) {
+    /// Puts the centre back onto the surface of contact number `i`, within the rounding bound of its position (R15: explicit, bounded, counted).
+    pub(super) fn correct(&mut self, i: usize, tolerance: f64) {
+        let contact = &self.contacts[i];
         if let Some(gap) = self.obstacles.gap(contact, &self.state.position)
             && gap != 0.0
             && gap.abs() <= tolerance
@@ -253,9 +261,9 @@ impl<O: Observer> Walk<'_, O> {
     }
 
     /// The rate of change of a contact's clearance on arrival: from the clearance itself where it was solved, else n.v.
-    fn rate(&self, step: &Step, hit: Hit, contact: &Contact, before: &[Contact], returns: &Returns) -> f64 {
+    fn rate(&self, step: &Step, hit: Hit, contact: &Contact, returns: &Returns) -> f64 {
         let known =
-            before.iter().zip(returns).find(|(b, _)| b.surface == contact.surface && b.normal == contact.normal);
+            self.before.iter().zip(returns).find(|(b, _)| b.surface == contact.surface && b.normal == contact.normal);
         if let Some((b, known)) = known {
             match *known {
                 _ if b.lasting => return 0.0,

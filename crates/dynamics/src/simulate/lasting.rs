@@ -2,7 +2,7 @@
 
 use super::Walk;
 use crate::body::State;
-use crate::collision::Hit;
+use crate::collision::{Hit, Returns};
 use crate::contacts::{Contact, Contacts, PerContact};
 use crate::events::{Bound, EventKind, Motion};
 use crate::integrators::{Step, exact};
@@ -50,15 +50,14 @@ impl<O: Observer> Walk<'_, O> {
     }
 
     /// Takes off from `left`, which carried it so far, if anything did.
-    pub(super) fn set_flying(&mut self, left: Option<Contact>) {
+    pub(super) fn set_flying(&mut self, left: Option<&Contact>) {
         self.motion = Motion::Flying;
         self.settling = None;
         self.rolls = false;
+        // What carried it is what lasted, if anything did.
         if let Some(contact) = left {
-            self.tell(EventKind::Leave, &contact, self.state.velocity);
-        }
-        for contact in &mut self.contacts {
-            contact.lasting = false;
+            self.tell(EventKind::Leave, contact, self.state.velocity);
+            self.contacts.iter_mut().for_each(|contact| contact.lasting = false);
         }
     }
 
@@ -123,7 +122,7 @@ impl<O: Observer> Walk<'_, O> {
         let flat = carriers.iter().all(|c| c.bend == Bend::Flat);
         let lifted = balance.loads.count() == 0 && (flat || is_lifted(&a, &carriers, &self.state));
         if lifted && self.settling.is_none() {
-            self.set_flying(carriers.first().map(|c| c.contact));
+            self.set_flying(carriers.first().map(|c| &c.contact));
             return;
         }
         if self.drop_unloaded(&a, &carriers, &balance) {
@@ -157,8 +156,9 @@ impl<O: Observer> Walk<'_, O> {
         step.to = off.unwrap_or(step.to);
         let mut crossings = Vec::new();
         let exit = self.exit(&step, &mut crossings);
-        let returns = self.obstacles.returns(&step, &self.contacts, &mut self.counters);
-        let hit = self.obstacles.earliest(&step, &self.contacts, &returns, &mut self.counters);
+        let mut returns = Returns::new();
+        self.obstacles.returns(&step, self.contacts, &mut returns, &mut self.counters);
+        let hit = self.obstacles.earliest(&step, self.contacts, &returns, &mut self.counters);
         let hit = hit.filter(|hit| exit.is_none_or(|(f, ..)| hit.f < f));
         let to = hit.map(|hit| hit.f).or(exit.map(|(f, ..)| f)).unwrap_or(step.to);
         let whole = hit.is_none() && exit.is_none() && off.is_none() && !stops && step.time(step.to) >= remaining;
@@ -194,7 +194,10 @@ impl<O: Observer> Walk<'_, O> {
                     self.end_settling();
                 }
             }
-            (None, None) if off.is_some() => self.set_flying(self.contacts.iter().find(|c| c.lasting).copied()),
+            (None, None) if off.is_some() => {
+                let left = self.contacts.iter().find(|c| c.lasting).copied();
+                self.set_flying(left.as_ref());
+            }
             (None, None) if stops => self.state.velocity = Vector3::zeros(),
             (None, None) => {}
         }
@@ -342,7 +345,8 @@ impl<O: Observer> Walk<'_, O> {
         }
         let tolerance = self.touch_tolerance(0.0);
         let State { position, velocity } = self.state;
-        let touched = self.obstacles.touching(&position, &velocity, tolerance, None, &mut self.counters);
+        let mut touched = Contacts::new();
+        self.obstacles.touching(&position, &velocity, tolerance, None, &mut touched, &mut self.counters);
         let rounding = rate_rounding(velocity.norm());
         let rises = |c: &&Contact| c.surface == contact.surface && c.site != contact.site && c.rate < -rounding;
         touched.iter().find(rises).and_then(|c| Some((c.surface, c.site?.face())))
@@ -373,10 +377,11 @@ impl<O: Observer> Walk<'_, O> {
                 contact.normal = normal;
             }
         }
-        let lasting: Contacts = self.contacts.iter().filter(|c| c.lasting).copied().collect();
-        for contact in &lasting {
-            let slack = SLIDING_TOLERANCE * self.obstacles.radius_at(contact);
-            self.correct(contact, self.touch_tolerance(0.0).max(slack));
+        for i in 0..self.contacts.len() {
+            if self.contacts[i].lasting {
+                let slack = SLIDING_TOLERANCE * self.obstacles.radius_at(&self.contacts[i]);
+                self.correct(i, self.touch_tolerance(0.0).max(slack));
+            }
         }
         self.make_tangential();
     }

@@ -11,7 +11,7 @@ use crate::response::changed_rate;
 use crate::sliding::{Balance, Carrier, Slide};
 use crate::support::along;
 use crate::tolerance::{
-    PATIENCE, PATIENCE_WITH_HOPS, PATIENCE_WITH_LOW_HOPS, least_hop, rate_rounding, time_resolution,
+    PATIENCE, PATIENCE_WITH_HOPS, PATIENCE_WITH_LOW_HOPS, RestThresholds, least_hop, rate_rounding, time_resolution,
 };
 use carom_geometry::rounding::position_bound;
 use carom_geometry::site::Bend;
@@ -28,27 +28,52 @@ struct Hop {
     neutral: f64,
 }
 
+/// Which hops are low under an acceleration; for most balls it is always the same.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Lowness {
+    /// The speed in m/s of a hop that is low, however it is pressed.
+    low: f64,
+    /// A speed in m/s at which bouncing does not end, however it is pressed: what presses it is not more than all of the acceleration.
+    fast: f64,
+}
+
+impl Lowness {
+    /// Under the acceleration `a` in m/s^2.
+    pub(super) fn under(a: &Vector3<f64>, rest: &RestThresholds) -> Self {
+        let most = a.norm();
+        Self { low: rest.low_hop(most), fast: rest.at(2.0 * most).speed }
+    }
+}
+
 impl<O: Observer> Walk<'_, O> {
     /// What the ball makes of its contacts: it flies on, goes on bouncing, or settles; `left` is what carried it so far, if anything
     /// did. Says whether something carries it.
     ///
     /// Contacts are held one at a time, the one that is left most slowly first: what is held may press the ball into another that its
     /// weight alone would not press it into, and takes from what presses it into a third that it hops on.
-    pub(super) fn settle(&mut self, left: Option<Contact>) -> bool {
-        let sliding = self.motion == Motion::Sliding;
+    pub(super) fn settle(&mut self, left: Option<&Contact>) -> bool {
         let a = self.forces.acceleration(&self.state, &mut self.counters);
-        let most = a.norm();
-        self.count_low_hops(most);
-        if self.bounces_on(most) {
+        if !self.forces.are_constant() {
+            self.lowness = Lowness::under(&a, &self.plan.rest);
+        }
+        self.count_low_hops();
+        if self.bounces_on() {
             self.counters.rest += self.contacts.len() as u64;
             self.set_flying(left);
             return false;
         }
+        self.hold(&a, left)
+    }
+
+    /// Holds what the ball no longer bounces on; says whether that carries it.
+    #[inline(never)]
+    fn hold(&mut self, a: &Vector3<f64>, left: Option<&Contact>) -> bool {
+        let sliding = self.motion == Motion::Sliding;
         let carriers = self.carriers();
         let before = self.state.velocity;
         let mut carrying = [false; MAX_CONTACTS];
         let mut settling = None;
-        while let Some((i, hop)) = self.next_held(&a, &carriers, &carrying) {
+        while let Some((i, hop)) = self.next_held(a, &carriers, &carrying) {
             carrying[i] = true;
             let contact = &carriers[i].contact;
             let c_r = self.surfaces[contact.surface].material.restitution.coefficient();
@@ -117,20 +142,17 @@ impl<O: Observer> Walk<'_, O> {
         next
     }
 
-    /// Whether every contact is left so fast, and has been for so short a time, that bouncing goes on however it is pressed: what presses it is
-    /// not more than all of the acceleration, `most` (m/s^2).
-    fn bounces_on(&self, most: f64) -> bool {
-        let slow = self.plan.rest.at(2.0 * most).speed;
+    /// Whether every contact is left so fast, and has been for so short a time, that bouncing goes on however it is pressed.
+    fn bounces_on(&self) -> bool {
         self.standstill < PATIENCE_WITH_HOPS
             && self.low_hops <= PATIENCE_WITH_LOW_HOPS
             && self.integrator.timestep().is_none()
-            && self.contacts.iter().all(|c| c.rate > slow)
+            && self.contacts.iter().all(|c| c.rate > self.lowness.fast)
     }
 
-    /// Counts the impacts in a row after which no hop is high under an acceleration of `most` (m/s^2).
-    fn count_low_hops(&mut self, most: f64) {
-        let low = self.plan.rest.low_hop(most);
-        let are_low = self.contacts.iter().all(|c| c.rate <= low);
+    /// Counts the impacts in a row after which no hop is high.
+    fn count_low_hops(&mut self) {
+        let are_low = self.contacts.iter().all(|c| c.rate <= self.lowness.low);
         self.low_hops = if are_low { self.low_hops + 1 } else { 0 };
     }
 

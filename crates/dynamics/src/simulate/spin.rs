@@ -3,7 +3,7 @@
 use super::Walk;
 use super::flight::Closing;
 use crate::body::State;
-use crate::contacts::{Contact, Contacts};
+use crate::contacts::Contact;
 use crate::effects::friction::Friction;
 use crate::effects::grip::{self, Grip};
 use crate::events::{EventKind, Motion};
@@ -37,35 +37,35 @@ pub(super) struct Slip {
 }
 
 impl<O: Observer> Walk<'_, O> {
-    /// At the impact that `velocity_in` came to with the `closing` ones of `contacts`: what those that grip make of velocity and spin.
+    /// At the impact that `velocity_in` came to with the `closing` contacts: what those that grip make of velocity and spin.
     ///
     /// The normal momentum of each is what the impact has changed along its normal; where friction drives the ball into another contact, that
     /// answers again.
-    pub(super) fn grip(&mut self, velocity_in: Vector3<f64>, contacts: &mut Contacts, closing: Closing) {
+    pub(super) fn grip(&mut self, velocity_in: Vector3<f64>, closing: Closing) {
         let (ball, surfaces) = (self.forces.ball, self.surfaces);
         let change = self.state.velocity - velocity_in;
-        for i in (0..contacts.len()).filter(|&i| closing.has(i)) {
-            let Friction::Grip(grip) = surfaces[contacts[i].surface].material.friction else { continue };
-            let n = contacts[i].normal;
+        for i in (0..self.contacts.len()).filter(|&i| closing.has(i)) {
+            let Friction::Grip(grip) = surfaces[self.contacts[i].surface].material.friction else { continue };
+            let n = self.contacts[i].normal;
             let u = grip::slip(ball, &self.state.velocity, &self.forces.body.spin, &n);
             let kick = grip.kick(&u, ball.inertia(), n.dot(&change).max(0.0));
             self.counters.friction += 1;
-            self.kick(&kick, &n, contacts);
+            let before = self.state.velocity;
+            self.kick(&kick, &n);
+            for contact in self.contacts.iter_mut() {
+                contact.rate = changed_rate(contact, &before, &self.state.velocity);
+            }
         }
-        if contacts.iter().any(|c| c.rate < 0.0) {
+        if self.contacts.iter().any(|c| c.rate < 0.0) {
             let material = |c: &Contact| &surfaces[c.surface].material;
-            self.state.velocity = respond(self.state.velocity, contacts, material, &mut self.counters);
+            self.state.velocity = respond(self.state.velocity, self.contacts, material, &mut self.counters);
         }
     }
 
     /// Adds a tangential `kick` at a surface of normal `n` to velocity and spin.
-    fn kick(&mut self, kick: &Vector3<f64>, n: &Vector3<f64>, contacts: &mut [Contact]) {
-        let before = self.state.velocity;
+    fn kick(&mut self, kick: &Vector3<f64>, n: &Vector3<f64>) {
         self.forces.body.spin = grip::turned(self.forces.ball, &self.forces.body.spin, kick, n);
         self.state.velocity += kick;
-        for contact in contacts {
-            contact.rate = changed_rate(contact, &before, &self.state.velocity);
-        }
     }
 
     /// What all the impacts of a bouncing that ends on `contact`, the first with the closing speed `closing` (m/s), make of velocity and spin.
@@ -73,7 +73,7 @@ impl<O: Observer> Walk<'_, O> {
         let ball = self.forces.ball;
         let u = grip::slip(ball, &self.state.velocity, &self.forces.body.spin, &contact.normal);
         let kick = grip.kick_to_the_end(&u, ball.inertia(), (1.0 + c_r) * closing / (1.0 - c_r));
-        self.kick(&kick, &contact.normal, &mut []);
+        self.kick(&kick, &contact.normal);
     }
 
     /// How a ball in lasting contact slips, or none if it does not spin, rolls, or nothing alone grips it.
