@@ -43,7 +43,7 @@ fn main() -> Result<()> {
 
 /// A ball against a triangle: deciles over the cases with exact answers, of the queries that end on each feature.
 fn triangle(runs: usize) {
-    const TIMES: usize = 64;
+    const TIMES: usize = 1024;
     let mut all: Vec<(String, f64)> = Vec::new();
     for case in ball_and_triangle() {
         let ball = MovingBall { path: &case.path, radius: case.radius, holds: &[] };

@@ -7,7 +7,7 @@
 //! decides and no position has to be nudged (stable event detection: Bannerman, Strobl, Lue, J. Chem. Phys. 139, 2014).
 
 use crate::bernstein;
-use crate::rounding::{exponent, scale};
+use crate::rounding::{exponent, power_of_two, scale};
 
 /// The highest degree of a path, and so of a clearance.
 pub const MAX_DEGREE: usize = bernstein::DEGREE;
@@ -180,8 +180,18 @@ impl Discriminant {
     }
 }
 
+/// Differences of products of which no more is lost to underflow than 2^-150 of them, and nothing to overflow.
+const PLAIN: std::ops::RangeInclusive<f64> = power_of_two(-924)..=power_of_two(1020);
+
 /// b^2 - 4 a c without cancellation (Kahan) and without over- or underflow.
+#[inline]
 fn discriminant(c: f64, b: f64, a: f64) -> Discriminant {
+    // A difference that has not cancelled is good as it stands, unless it is so small or large that its products may be out of range.
+    let (square, product) = (b * b, 4.0 * a * c);
+    let plain = square - product;
+    if plain.abs() >= 0.5 * square && PLAIN.contains(&plain.abs()) {
+        return Discriminant { value: plain, exponent: 0 };
+    }
     // Products of numbers in this range neither overflow nor lose bits to underflow.
     const SAFE: std::ops::RangeInclusive<f64> = 1.0e-135..=1.0e150;
     let safe = |x: f64| x == 0.0 || SAFE.contains(&x.abs());

@@ -62,8 +62,6 @@ pub(crate) struct Asked {
     frame: Frame,
     size: f64,
     in_range: bool,
-    /// By which power of two the frame is smaller than the triangle.
-    scaled_by: i32,
 }
 
 impl Asked {
@@ -74,11 +72,11 @@ impl Asked {
         let size = largest(amax(&(b - a)), amax(&(c - a)));
         let triangle = [Point3::from(a), Point3::from(b), Point3::from(c)];
         if (LEAST_DIRECT..LIMIT_OF_DIRECT).contains(&size) || size == 0.0 {
-            return Self { corners, frame: Frame::new(&triangle), size, in_range: size > 0.0, scaled_by: 0 };
+            return Self { corners, frame: Frame::new(&triangle), size, in_range: size > 0.0 };
         }
         let k = exponent(size);
         let frame = Frame::new(&triangle.map(|p| p.map(|c| scale(c, -k))));
-        Self { corners, frame, size: scale(size, -k), in_range: false, scaled_by: k }
+        Self { corners, frame, size: scale(size, -k), in_range: false }
     }
 
     /// What [`closest_point`] says, bit for bit.
@@ -91,15 +89,14 @@ impl Asked {
         }
     }
 
-    /// Whether the inside of the triangle is what is nearest to `x`: false where that is in doubt.
+    /// What of the triangle is closest to `x`, as [`closest`](Self::closest) says: but on the border between two features, rounding may decide otherwise.
     #[inline]
-    pub(crate) fn is_under(&self, x: &Vector3<f64>) -> bool {
-        let away = amax(&(x - self.corners[0]));
-        if self.scaled_by == 0 {
-            return largest(self.size, away) < LIMIT_OF_DIRECT && self.frame.is_under(&Point3::from(*x));
+    pub(crate) fn nearest(&self, x: &Vector3<f64>) -> Feature {
+        if self.in_range && largest(self.size, amax(&(x - self.corners[0]))) < LIMIT_OF_DIRECT {
+            self.frame.nearest(&Point3::from(*x))
+        } else {
+            self.closest(x).feature
         }
-        let to_unit = |c: f64| scale(c, -self.scaled_by);
-        to_unit(away) < LIMIT_OF_DIRECT && self.frame.is_under(&Point3::from(x.map(to_unit)))
     }
 
     /// The corners of the triangle.
@@ -172,14 +169,6 @@ impl Frame {
         Self { first, vertices, ab, ac, normal, is_needle }
     }
 
-    fn vertex(&self, i: u8) -> Feature {
-        Feature::Vertex((self.first + i) % 3)
-    }
-
-    fn edge(&self, i: u8) -> Feature {
-        Feature::Edge((self.first + i) % 3)
-    }
-
     /// How far the foot of a point is inside of each edge, from the point's place as seen from each vertex.
     ///
     /// Triple products, not the differences of products d1 d4 - d3 d2 ... that they equal: those lose the height of a needle.
@@ -189,77 +178,123 @@ impl Frame {
         [inside(&self.ab, ap), inside(ap, &self.ac), inside(bp, cp)]
     }
 
-    /// Whether `x` is over the inside of the triangle, to the rounding of its distances from the vertices. Of a needle, the triple products do not
-    /// tell what is beyond its ends.
+    /// What of the triangle is closest to the point that is seen like this from each vertex, counted from the first one here.
     #[inline]
-    fn is_under(&self, x: &Point3<f64>) -> bool {
-        if self.is_needle {
-            return self.closest(x).feature == Feature::Face;
+    fn region(&self, [ap, bp, cp]: &[Vector3<f64>; 3], insides: impl FnOnce() -> [f64; 3]) -> Feature {
+        let (ab, ac) = (self.ab, self.ac);
+        let (d1, d2) = (ab.dot(ap), ac.dot(ap));
+        if d1 <= 0.0 && d2 <= 0.0 {
+            return Feature::Vertex(0);
         }
-        self.insides(&self.vertices.map(|v| x - v)).iter().all(|inside| *inside > 0.0)
+        let (d3, d4) = (ab.dot(bp), ac.dot(bp));
+        if d3 >= 0.0 && d4 <= d3 {
+            return Feature::Vertex(1);
+        }
+        let (d5, d6) = (ab.dot(cp), ac.dot(cp));
+        if d6 >= 0.0 && d5 <= d6 {
+            return Feature::Vertex(2);
+        }
+        let [vc, vb, va] = insides();
+        if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 && d1 > d3 {
+            return Feature::Edge(0);
+        }
+        if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 && d2 > d6 {
+            return Feature::Edge(2);
+        }
+        let (beyond_b, beyond_c) = (d4 - d3, d5 - d6);
+        if va <= 0.0 && beyond_b >= 0.0 && beyond_c >= 0.0 && beyond_b + beyond_c > 0.0 {
+            return Feature::Edge(1);
+        }
+        Feature::Face
+    }
+
+    /// A feature, counted from the first vertex, as the triangle counts them.
+    #[inline]
+    fn of_triangle(&self, feature: Feature) -> Feature {
+        match feature {
+            Feature::Face => Feature::Face,
+            Feature::Edge(i) => Feature::Edge((self.first + i) % 3),
+            Feature::Vertex(i) => Feature::Vertex((self.first + i) % 3),
+        }
+    }
+
+    /// What of the triangle is closest to `x`, except for one without an area.
+    #[inline]
+    fn nearest(&self, x: &Point3<f64>) -> Feature {
+        let seen = self.vertices.map(|v| x - v);
+        let insides = self.insides(&seen);
+        // Of a needle, the triple products do not tell what is beyond its ends.
+        if !self.is_needle && insides.iter().all(|inside| *inside > 0.0) {
+            return Feature::Face;
+        }
+        self.of_triangle(self.region(&seen, || insides))
     }
 
     /// The closest point, of a triangle and a point in [`DIRECT_RANGE`].
     fn closest(&self, x: &Point3<f64>) -> Closest {
-        let ([a, b, c], ab, ac) = (self.vertices, self.ab, self.ac);
-        let at = |point: Point3<f64>, offset, feature| Closest { point, offset, feature };
-
-        let ap = x - a;
-        let (d1, d2) = (ab.dot(&ap), ac.dot(&ap));
-        if d1 <= 0.0 && d2 <= 0.0 {
-            return at(a, ap, self.vertex(0));
-        }
-        let bp = x - b;
-        let (d3, d4) = (ab.dot(&bp), ac.dot(&bp));
-        if d3 >= 0.0 && d4 <= d3 {
-            return at(b, bp, self.vertex(1));
-        }
-        let cp = x - c;
-        let (d5, d6) = (ab.dot(&cp), ac.dot(&cp));
-        if d6 >= 0.0 && d5 <= d6 {
-            return at(c, cp, self.vertex(2));
-        }
-        // From the end that is first by size and without the third vertex: the same bits from each face that has the edge.
-        let along = |p: &Point3<f64>, q: &Point3<f64>, feature| {
-            let (from, to) = if by_size(&p.coords, &q.coords).is_le() { (p, q) } else { (q, p) };
-            let (edge, offset) = (to - from, x - from);
-            let length = edge.norm_squared();
-            if length == 0.0 {
-                return at(*from, offset, feature);
+        let vertices = &self.vertices;
+        let seen = vertices.map(|v| x - v);
+        let at = |point: Point3<f64>, offset, feature| Closest { point, offset, feature: self.of_triangle(feature) };
+        match self.region(&seen, || self.insides(&seen)) {
+            Feature::Vertex(i) => at(vertices[usize::from(i)], seen[usize::from(i)], Feature::Vertex(i)),
+            Feature::Edge(i) => {
+                let vertex = |i: u8| &vertices[usize::from(i)].coords;
+                let foot = Foot::on(ends_of_edge(i, vertex).map(vertex), &x.coords);
+                at(foot.point.into(), foot.offset, Feature::Edge(i))
             }
-            let part = edge.dot(&offset) / length;
-            let offset = offset - edge * part;
-            // Once more, for what rounding left along the edge.
-            let rest = edge.dot(&offset) / length;
-            at(from + edge * (part + rest), offset - edge * rest, feature)
-        };
-        let [vc, vb, va] = self.insides(&[ap, bp, cp]);
-        if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 && d1 > d3 {
-            return along(&a, &b, self.edge(0));
-        }
-        if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 && d2 > d6 {
-            return along(&a, &c, self.edge(2));
-        }
-        let (beyond_b, beyond_c) = (d4 - d3, d5 - d6);
-        if va <= 0.0 && beyond_b >= 0.0 && beyond_c >= 0.0 && beyond_b + beyond_c > 0.0 {
-            return along(&b, &c, self.edge(1));
-        }
-        let n = self.normal;
-        let area_squared = n.norm_squared();
-        if area_squared > 0.0 {
-            let offset = n * (n.dot(&ap) / area_squared);
-            return at(x - offset, offset, Feature::Face);
-        }
-        // No area, and rounding put x past every segment: the nearest vertex.
-        let nearer = |p: &Vector3<f64>, q: &Vector3<f64>| p.norm_squared() <= q.norm_squared();
-        if nearer(&ap, &bp) && nearer(&ap, &cp) {
-            at(a, ap, self.vertex(0))
-        } else if nearer(&bp, &cp) {
-            at(b, bp, self.vertex(1))
-        } else {
-            at(c, cp, self.vertex(2))
+            Feature::Face => {
+                let (n, [ap, bp, cp]) = (self.normal, &seen);
+                let area_squared = n.norm_squared();
+                if area_squared > 0.0 {
+                    let offset = n * (n.dot(ap) / area_squared);
+                    return at(x - offset, offset, Feature::Face);
+                }
+                // No area, and rounding put x past every segment: the nearest vertex.
+                let nearer = |p: &Vector3<f64>, q: &Vector3<f64>| p.norm_squared() <= q.norm_squared();
+                let [a, b, c] = *vertices;
+                if nearer(ap, bp) && nearer(ap, cp) {
+                    at(a, *ap, Feature::Vertex(0))
+                } else if nearer(bp, cp) {
+                    at(b, *bp, Feature::Vertex(1))
+                } else {
+                    at(c, *cp, Feature::Vertex(2))
+                }
+            }
         }
     }
+}
+
+/// The point of a line that is nearest to x.
+pub(crate) struct Foot {
+    pub(crate) point: Vector3<f64>,
+    /// x - `point`, orthogonal to the line to a few units of itself.
+    pub(crate) offset: Vector3<f64>,
+    /// How far it is from the one end to the other: in [0, 1] between them.
+    pub(crate) part: f64,
+}
+
+impl Foot {
+    /// On the line through two points: which is the first makes a difference to the rounding.
+    #[inline]
+    pub(crate) fn on([from, to]: [&Vector3<f64>; 2], x: &Vector3<f64>) -> Self {
+        let (edge, offset) = (to - from, x - from);
+        let length = edge.norm_squared();
+        if length == 0.0 {
+            return Self { point: *from, offset, part: 0.0 };
+        }
+        let part = edge.dot(&offset) / length;
+        let offset = offset - edge * part;
+        // Once more, for what rounding left along the edge.
+        let rest = edge.dot(&offset) / length;
+        Self { point: from + edge * (part + rest), offset: offset - edge * rest, part: part + rest }
+    }
+}
+
+/// Which are the ends of edge `i` of a triangle with these corners, first the one that is by size: in the same direction from each face that has the edge.
+#[inline]
+pub(crate) fn ends_of_edge<'a>(i: u8, corner: impl Fn(u8) -> &'a Vector3<f64>) -> [u8; 2] {
+    let j = (i + 1) % 3;
+    if by_size(corner(i), corner(j)).is_le() { [i, j] } else { [j, i] }
 }
 
 #[cfg(test)]

@@ -13,8 +13,8 @@ use crate::clearance::{Clearance, Entry};
 use crate::closest::{Asked, Feature};
 use crate::normal::unit;
 use crate::path::Path;
-use crate::rounding::{UNIT_ROUNDOFF, contact_bound, hold_bound};
-use ahead::Ahead;
+use crate::rounding::{UNIT_ROUNDOFF, contact_bound, hold_bound, round_bound};
+use ahead::{Ahead, Apart};
 use nalgebra::{Point3, Vector3};
 
 /// A plane the ball is known to touch at the start of its path: the contact it just had, or has.
@@ -136,45 +136,18 @@ pub(crate) fn contact_from(ball: &MovingBall, asked: &Asked, from: f64, to: f64,
         return Contact::Miss;
     }
     let query = Query::new(ball, asked, to);
-    let (path, mut f) = (ball.path, from);
-    if let Some((gap, normal)) = face_plane(asked, ball, f) {
-        let plane = path.clearance(gap, &normal);
-        if plane.at(f) > 2.0 * query.bound_at(f) {
-            *rounds += 1;
-            match query.meets(&plane, f).0 {
-                Entry::Never => return Contact::Miss,
-                Entry::At { f: next, .. } => f = next,
-            }
-            if f <= to && plane.rate(f) < 0.0 && asked.is_under(&path.displacement(f)) {
-                // Met over its inside, the face is what is touched.
-                return Contact::At { feature: Feature::Face, f: plane.first_entry(f, query.end).f().unwrap_or(f) };
-            }
-        }
-    }
-    let mut looked = false;
+    let (mut f, mut looked) = (from, false);
     for _ in 0..MAX_ROUNDS {
         if f > to {
             return Contact::Miss;
         }
         *rounds += 1;
-        let bound = query.bound_at(f);
-        let (feature, plane) = Support::near(ball, asked, f, 2.0 * bound);
-        let (height, falling) = (plane.at(f), plane.rate(f) < 0.0);
-        if height <= 2.0 * bound && falling {
-            return Contact::At { feature, f: query.polish((feature, plane, f), f, bound, rounds) };
-        }
-        let (entry, bound) = query.meets(&plane, f);
-        let Entry::At { f: next, .. } = entry else {
-            return Contact::Miss;
+        let bound = 2.0 * query.bound_at(f);
+        let ahead = match query.face_at(f) {
+            // Twice the bound: where it is met by the bound, there is no asking it again.
+            Some(plane) if plane.at(f) > 2.0 * bound => query.by_face(&plane, f, rounds),
+            _ => query.by_nearest(f, bound, &mut looked, rounds),
         };
-        if (height <= 2.0 * bound && falling) || next - f <= 2.0 * UNIT_ROUNDOFF * f {
-            return Contact::At { feature, f: query.polish((feature, plane, f), f, bound, rounds) };
-        }
-        let ahead = match looked {
-            false if next <= to => query.look_ahead(feature, f, next, to, rounds),
-            _ => Ahead::FreeUntil(next),
-        };
-        looked = true;
         match ahead {
             Ahead::Ends(contact) => return contact,
             Ahead::FreeUntil(next) => f = next,
@@ -192,14 +165,19 @@ struct Query<'a> {
     asked: &'a Asked,
     /// How far the triangle reaches from the start of the path, or the radius.
     size: f64,
+    /// The unit normal of the face, if it has one.
+    normal: Option<Vector3<f64>>,
+    /// The end of the search.
+    to: f64,
     /// Planes are met on the whole path: a contact where the search ends is decided as one before it.
     end: f64,
 }
 
 impl<'a> Query<'a> {
+    #[inline]
     fn new(ball: &'a MovingBall<'a>, asked: &'a Asked, to: f64) -> Self {
         let size = asked.corners().iter().map(amax).fold(ball.radius, largest);
-        Self { ball, asked, size, end: to.max(1.0) }
+        Self { ball, asked, size, normal: asked.normal(), to, end: to.max(1.0) }
     }
 
     #[inline]
@@ -222,6 +200,58 @@ impl<'a> Query<'a> {
         }
     }
 
+    /// What the `plane` of the face tells, from which the ball is apart at `f`, and what is seen from where it meets that.
+    #[inline]
+    fn by_face(&self, plane: &Clearance, f: f64, rounds: &mut u64) -> Ahead {
+        let mut until = None;
+        let met = match plane.first_entry(f, self.end) {
+            Entry::At { f: met, .. } if met <= self.to => met,
+            // Never or too late, but perhaps only by rounding.
+            entry => {
+                let (Entry::At { f: free, rate }, _) = self.meets(plane, f) else { return Ahead::Ends(Contact::Miss) };
+                if free > self.to {
+                    return Ahead::Ends(Contact::Miss);
+                }
+                until = Some(free);
+                match entry {
+                    Entry::At { f: met, .. } => met,
+                    Entry::Never if rate < 0.0 => free,
+                    Entry::Never => return Ahead::FreeUntil(free),
+                }
+            }
+        };
+        let place = self.ball.path.displacement(met);
+        match self.asked.nearest(&place) {
+            // Met over its inside, the face is what is touched.
+            Feature::Face => Ahead::Ends(Contact::At { feature: Feature::Face, f: met }),
+            feature => self.look_ahead(feature, met, &mut Apart::new(*plane, f, until), rounds),
+        }
+    }
+
+    /// What the plane tells that faces the ball at `f`, which touches if it is no farther off than `bound`, and what is seen from where it meets that, unless
+    /// it was `looked` for before.
+    fn by_nearest(&self, f: f64, bound: f64, looked: &mut bool, rounds: &mut u64) -> Ahead {
+        let (feature, plane) = self.near(f, bound);
+        let touches = plane.at(f) <= bound && plane.rate(f) < 0.0;
+        let contact = |bound: f64, rounds: &mut u64| {
+            Ahead::Ends(Contact::At { feature, f: self.polish((feature, plane, f), f, bound, rounds) })
+        };
+        if touches {
+            return contact(bound, rounds);
+        }
+        let (entry, moved) = self.meets(&plane, f);
+        let Entry::At { f: next, .. } = entry else { return Ahead::Ends(Contact::Miss) };
+        let bound = 2.0 * moved;
+        if (plane.at(f) <= bound && plane.rate(f) < 0.0) || next - f <= 2.0 * UNIT_ROUNDOFF * f {
+            return contact(bound, rounds);
+        }
+        if *looked || next > self.to {
+            return Ahead::FreeUntil(next);
+        }
+        *looked = true;
+        self.look_ahead(feature, next, &mut Apart::new(plane, f, Some(next)), rounds)
+    }
+
     /// From `f`, where the ball touches to within the bound, to where it touches: support planes again, now where they are. The triangle
     /// is behind them all the same, so this ends at the contact to the rounding of the planes: on a face at once, at an edge or a vertex in
     /// a step or two of Newton's method. The first is the `plane` that faces the ball at `seen`, of that `feature`.
@@ -231,34 +261,52 @@ impl<'a> Query<'a> {
             let Entry::At { f: next, .. } = plane.first_entry(f, self.end) else {
                 break;
             };
-            let arrived =
-                next - f <= 2.0 * UNIT_ROUNDOFF * f || feature == Feature::Face || self.is_as_seen(seen, next);
+            let is_as_seen = || self.is_as_seen(&self.ball.path.displacement(seen), next);
+            let arrived = next - f <= 2.0 * UNIT_ROUNDOFF * f || feature == Feature::Face || is_as_seen();
             f = next;
             if arrived {
                 break;
             }
             *rounds += 1;
             seen = f;
-            (feature, plane) = Support::near(self.ball, self.asked, f, 2.0 * bound);
+            (feature, plane) = self.near(f, bound);
         }
         f
     }
 
-    /// Whether a plane that faces the ball at `seen` is as near to an edge or a vertex at `f` as rounding tells: the ball, which is round, is off it there
+    /// Whether a plane that faces the ball with its centre at `seen` is as near to an edge or a vertex at `f` as rounding tells: the ball, which is round, is off it there
     /// by half the square of its way over its radius.
-    fn is_as_seen(&self, seen: f64, f: f64) -> bool {
-        let way = self.ball.path.displacement(f) - self.ball.path.displacement(seen);
-        (way / self.ball.radius).norm_squared() <= UNIT_ROUNDOFF
+    #[inline]
+    fn is_as_seen(&self, seen: &Vector3<f64>, f: f64) -> bool {
+        let way = self.ball.path.displacement(f) - seen;
+        way.norm_squared() < round_bound(self.ball.radius, self.size)
     }
-}
 
-/// The distance between the ball at the start and the plane of the triangle, seen from the side the ball is on at `f`, and the normal
-/// to there. While the ball has not met it, it is as good a certificate as any, and for a contact with the face the only one needed.
-fn face_plane(asked: &Asked, ball: &MovingBall, f: f64) -> Option<(f64, Vector3<f64>)> {
-    let n = asked.normal()?;
-    let from_corner = ball.path.displacement(f) - asked.corners()[0];
-    let n = if n.dot(&from_corner) < 0.0 { -n } else { n };
-    Some((-farthest_along(asked.corners(), &n) - ball.radius, n))
+    /// The clearance from the plane of the triangle, seen from the side the ball is on at `f`. While the ball has not met it, it is as good a
+    /// certificate as any, and for a contact with the face the only one needed.
+    #[inline]
+    fn face_at(&self, f: f64) -> Option<Clearance> {
+        let (n, corners) = (self.normal?, self.asked.corners());
+        let n = if n.dot(&(self.ball.path.displacement(f) - corners[0])) < 0.0 { -n } else { n };
+        Some(Support::of(self.ball, corners, n, Feature::Face).clearance(self.ball))
+    }
+
+    /// What is closest to the ball at `f`, and the path's clearance from the plane that faces it there; where the ball touches the border of the triangle to within `bound`, the
+    /// better of that and the face's own.
+    ///
+    /// For a ball that is small beside the triangle, the direction to the border is rounding: a plane that it turns towards the face has that in
+    /// front, and tells nothing; one that it turns away closes in on a ball that rises from the face.
+    fn near(&self, f: f64, bound: f64) -> (Feature, Clearance) {
+        let support = Support::at(self.ball, self.asked, f);
+        let (feature, plane) = (support.feature, support.clearance(self.ball));
+        let height = plane.at(f);
+        if feature == Feature::Face || height > bound {
+            return (feature, plane);
+        }
+        let Some(face) = self.face_at(f) else { return (feature, plane) };
+        let better = face.at(f) >= -bound && (height < -bound || face.rate(f) >= 0.0);
+        (feature, if better { face } else { plane })
+    }
 }
 
 /// A support plane of a triangle, from the start of the path.
@@ -272,33 +320,26 @@ struct Support {
 }
 
 impl Support {
+    /// The plane across `normal`.
+    #[inline]
+    fn of(ball: &MovingBall, corners: &[Vector3<f64>; 3], normal: Vector3<f64>, feature: Feature) -> Self {
+        Self { normal, gap: -farthest_along(corners, &normal) - ball.radius, feature }
+    }
+
     /// The plane that faces the ball at `f`.
+    #[inline]
     fn at(ball: &MovingBall, asked: &Asked, f: f64) -> Self {
         let closest = asked.closest(&ball.path.displacement(f));
         let corners = asked.corners();
         let (away, distance) = (closest.offset, closest.offset.norm());
         let normal = if distance > 0.0 { away / distance } else { escape_direction(corners, ball.path, f) };
-        let gap = -farthest_along(corners, &normal) - ball.radius;
-        Self { normal, gap, feature: closest.feature }
+        Self::of(ball, corners, normal, closest.feature)
     }
 
-    /// What is closest to the ball at `f`, and the path's clearance from the plane that faces it there; where the ball touches the border of the triangle to within `bound`, the
-    /// better of that and the face's own.
-    ///
-    /// For a ball that is small beside the triangle, the direction to the border is rounding: a plane that it turns towards the face has that in
-    /// front, and tells nothing; one that it turns away closes in on a ball that rises from the face.
+    /// The path's clearance from it.
     #[inline]
-    fn near(ball: &MovingBall, asked: &Asked, f: f64, bound: f64) -> (Feature, Clearance) {
-        let Self { normal, gap, feature } = Self::at(ball, asked, f);
-        let plane = ball.path.clearance(gap, &normal);
-        let height = plane.at(f);
-        if feature == Feature::Face || height > bound {
-            return (feature, plane);
-        }
-        let Some((gap, normal)) = face_plane(asked, ball, f) else { return (feature, plane) };
-        let face = ball.path.clearance(gap, &normal);
-        let better = face.at(f) >= -bound && (height < -bound || face.rate(f) >= 0.0);
-        (feature, if better { face } else { plane })
+    fn clearance(&self, ball: &MovingBall) -> Clearance {
+        ball.path.clearance(self.gap, &self.normal)
     }
 }
 

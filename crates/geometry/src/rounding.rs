@@ -210,6 +210,13 @@ pub fn contact_doubt(extent: f64) -> f64 {
     5.0 * contact_bound(extent)
 }
 
+/// The square of the way that a ball of `radius` may make so that it is off the plane that faced it at an edge or a vertex by rounding only, among lengths of `size`.
+///
+/// A ball is off its tangent by half the square of the way over the radius: by half of u `size` at most.
+pub(crate) fn round_bound(radius: f64, size: f64) -> f64 {
+    UNIT_ROUNDOFF * (radius * size)
+}
+
 /// The distance between ball and triangle that is no contact, not even in doubt, as computed from planes with their normals scaled or
 /// not: [`contact_doubt`], and as much again as [`contact_bound`] allows the evaluation, threefold.
 pub(crate) fn screen_bound(extent: f64) -> f64 {
@@ -296,6 +303,7 @@ mod tests {
         assert_eq!([position_bound(3.0), segment_bound(3.0), contact_bound(3.0)].map(units), [48.0, 24.0, 48.0]);
         assert_eq!([contact_doubt(3.0), hold_bound(2.0), point_radius(3.0)].map(units), [240.0, 256.0, 49152.0]);
         assert_eq!([cone_bound(3.0), triple_product_bound(3.0)].map(units), [384.0, 4608.0]);
+        assert_eq!(units(round_bound(2.0, 3.0)), 6.0);
         let in_f32 = |reach, radius| segment_bound_f32(reach, radius) / UNIT_ROUNDOFF_F32;
         assert_eq!([in_f32(0.0, 0.0), in_f32(3.0, 0.0), in_f32(0.0, 3.0), in_f32(3.0, 5.0)], [2.0, 50.0, 8.0, 60.0]);
         // e = 14 u times the extent; (2 e, and e times diameter times perimeter over area) and 2 e over each height.
