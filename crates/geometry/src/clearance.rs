@@ -180,16 +180,16 @@ impl Discriminant {
     }
 }
 
-/// Differences of products of which no more is lost to underflow than 2^-150 of them, and nothing to overflow.
+/// Sums of products of which no more is lost to underflow than 2^-150 of them, and nothing to overflow.
 const PLAIN: std::ops::RangeInclusive<f64> = power_of_two(-924)..=power_of_two(1020);
 
 /// b^2 - 4 a c without cancellation (Kahan) and without over- or underflow.
 #[inline]
 fn discriminant(c: f64, b: f64, a: f64) -> Discriminant {
-    // A difference that has not cancelled is good as it stands, unless it is so small or large that its products may be out of range.
-    let (square, product) = (b * b, 4.0 * a * c);
-    let plain = square - product;
-    if plain.abs() >= 0.5 * square && PLAIN.contains(&plain.abs()) {
+    // Where nothing cancels, the plain formula is as good, unless it is so small or large that its products may be out of range.
+    let product = 4.0 * a * c;
+    let plain = b * b - product;
+    if product <= 0.0 && PLAIN.contains(&plain) {
         return Discriminant { value: plain, exponent: 0 };
     }
     // Products of numbers in this range neither overflow nor lose bits to underflow.
