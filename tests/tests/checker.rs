@@ -68,8 +68,8 @@ fn r28_what_once_went_wrong_stays_right() {
         ("jacksboro", &[52, 639, 916]),
         // Points that bounce and slide along the border of a wall, and must come back to it.
         ("box", &[112, 546, 708, 714]),
-        // Gliding in a groove that nothing presses; settling in the air.
-        ("bunny", &[10450, 20106]),
+        // Gliding in a groove that nothing presses; settling in the air; taking off from an edge, by less than rounding.
+        ("bunny", &[10450, 20106, 126]),
         // A fold so shallow that three faces were held at once; steps of no length.
         ("terrain", &[10079, 916]),
         // Elastic walls at the end of rails; a groove of unequal sides, driven by its rail.

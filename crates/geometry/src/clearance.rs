@@ -94,6 +94,11 @@ impl Clearance {
         (12.0 * c4 * f + 6.0 * c3) * f + 2.0 * c2
     }
 
+    /// From the other side: -c(f).
+    pub fn opposite(&self) -> Self {
+        Self { c: self.c.map(|c| -c) }
+    }
+
     /// How the clearance may change over [0, `to`], `to` >= 0, but for rounding: it falls by no more than this, which is not positive.
     #[inline]
     pub fn fall(&self, to: f64) -> f64 {

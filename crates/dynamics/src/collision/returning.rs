@@ -42,7 +42,7 @@ fn leaving(step: &Step, contact: &Contact) -> Clearance {
     Clearance::new(c)
 }
 
-/// The f up to which the path cannot come back to the edge or vertex, bent as `bend`, that it leaves from distance `radius`
+/// The f up to which the path cannot come back, by more than rounding, to the edge or vertex, bent as `bend`, that it leaves from distance `radius`
 /// with the slope `slope` of its clearance.
 ///
 /// For a parabola |w(f)|^2 - r^2, with w the part across the edge, is a quartic, solved like any clearance. The further terms of a path bring it
@@ -69,7 +69,23 @@ fn leaves_until(step: &Step, bend: Bend, radius: f64, slope: f64) -> f64 {
     let quartic = c.norm_squared() - 2.0 * radius * fourth - further * further;
     let quartic = quartic - less(second * c_most + 2.0 * radius * fourth + further * further);
     let off = Clearance::new([0.0, leaving, gain, cubic, quartic]);
-    off.first_entry(0.0, step.to).f().unwrap_or(f64::INFINITY)
+    let dip = 2.0 * radius * rounding_at(step, radius);
+    until(&off.first_entry(after_dip(&off, step.to, dip), step.to))
+}
+
+/// Where what is 0 at first is so again, if it is below by no more than `depth` in between; 0 if it is above at once, or goes deeper.
+///
+/// A ball that takes off from an edge is balanced on it: whether it leaves at once or a little later is decided by less than rounding.
+fn after_dip(off: &Clearance, to: f64, depth: f64) -> f64 {
+    match off.opposite().first_entry(0.0, to) {
+        Entry::At { f, .. } if -off.fall(f) <= depth => f,
+        _ => 0.0,
+    }
+}
+
+/// By how much the place of the ball may be off, at the start of the step.
+fn rounding_at(step: &Step, radius: f64) -> f64 {
+    touch_distance(amax(&step.path.start().coords).max(radius), 0.0)
 }
 
 /// Where the step crosses a bound of the region of a place.
@@ -147,7 +163,7 @@ impl Obstacles<'_> {
 
     /// `contacts`, to which `step` comes back by `returns`, as the search of a mesh needs them; `face` is left to that mesh.
     pub(super) fn holds(&self, step: &Step, contacts: &[Contact], returns: &Returns) -> PerContact<Hold> {
-        let slack = touch_distance(amax(&step.path.start().coords).max(self.radius), 0.0);
+        let slack = rounding_at(step, self.radius);
         let mut holds = PerContact::new();
         for (contact, back) in contacts.iter().zip(returns) {
             let (normal, point) = (contact.normal, self.anchor(contact));

@@ -86,3 +86,21 @@ fn r28_no_path_is_free_longer_than_it_is_off() {
     }
     assert!(freed > 800 && cut > 200, "{freed} of 1000 may leave, {cut} may come back");
 }
+
+#[test]
+fn r28_what_takes_off_from_an_edge_is_free_though_rounding_lets_it_dip() {
+    let [edge, vertex] = edge_and_vertex();
+    // Across the edge at speed s, bent around it by s^2 / 2 r, but for a share; and faster and faster, which takes it off.
+    let s = 0.5;
+    let until = |bend, share: f64| {
+        let around = s * s / (2.0 * RADIUS) * (1.0 + share);
+        let path = step(&[Vector3::x() * s, Vector3::x() * 0.25 - Vector3::z() * around]);
+        leaves_until(&path, bend, RADIUS, 0.0)
+    };
+    for bend in [edge, vertex] {
+        for share in [-1e-3, -1e-9, 0.0, 1e-15, 1e-12, 1e-9] {
+            assert_eq!(until(bend, share), f64::INFINITY, "{bend:?} with {share:e}");
+        }
+        assert_eq!(until(bend, 1e-3), 0.0, "{bend:?}: deeper than rounding");
+    }
+}
