@@ -80,7 +80,7 @@ fn hop(mesh: &Mesh, radius: f64, mut state: State, [a, jerk]: [Vector3<f64>; 2],
         let end = step.at(hit.f);
         let touching = |f, counters: &mut Counters| {
             let mut touched = Contacts::new();
-            kept.touching(&end.position, &end.velocity, doubt, f, &mut touched, counters);
+            kept.touching(&end, doubt, f, &mut touched, counters);
             touched
         };
         let touched = touching(Some(hit.f), &mut counters);

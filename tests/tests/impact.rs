@@ -66,7 +66,7 @@ fn r02_detection_determination_and_response_one_after_the_other() {
     let there = step.at(hit.f);
     let mut touched = Contacts::new();
     let tolerance = touch_distance(1.25, 1.5);
-    obstacles.touching(&there.position, &there.velocity, tolerance, None, &mut touched, &mut counters);
+    obstacles.touching(&there, tolerance, None, &mut touched, &mut counters);
     assert_eq!(touched.len(), 1);
 
     // Response: which velocity.

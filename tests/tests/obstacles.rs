@@ -51,7 +51,13 @@ fn h10_of_surfaces_met_at_once_the_first_by_name_is_hit() {
         assert_eq!((hit.f, hit.surface, hit.rate, counters.clearances), (0.5, first, Some(-1.0), 2));
         // Known contacts are asked when they are entered again, and not once more.
         let mut touching = Contacts::new();
-        at.touching(&Point3::new(0.0, 0.0, 0.5), &Vector3::z(), 0.0, None, &mut touching, &mut counters);
+        at.touching(
+            &State { position: Point3::new(0.0, 0.0, 0.5), velocity: Vector3::z() },
+            0.0,
+            None,
+            &mut touching,
+            &mut counters,
+        );
         at.returns(&step, &touching, &mut returns, &mut counters);
         assert_eq!((touching.len(), counters.clearances), (1, 3), "one normal is one contact");
     }
@@ -215,7 +221,13 @@ fn h01_what_is_left_along_itself_is_not_hit_at_once_whatever_the_rounding() {
             let state = State { position: x, velocity: Vector3::zeros() };
             let (mut touched, mut counters) = (Contacts::new(), Counters::default());
             let at = Obstacles::new(&plan, RADIUS, &state, &n);
-            at.touching(&x, &Vector3::zeros(), contact_doubt(4.0), None, &mut touched, &mut counters);
+            at.touching(
+                &State { position: x, velocity: Vector3::zeros() },
+                contact_doubt(4.0),
+                None,
+                &mut touched,
+                &mut counters,
+            );
             let [contact] = touched[..] else { panic!("{touched:?} at {x}") };
             let across = n.cross(&Vector3::x()).normalize();
             let v = across * c + n.cross(&across) * s;
@@ -258,8 +270,9 @@ fn contacts_are_one_where_the_tolerance_makes_their_normals_so_and_eight_at_most
     let touched = |stage: Stage| {
         let plan = stage.ball([0.0, 0.0, 2.0], [0.0; 3], RADIUS).plan();
         let step = line([0.0, 0.0, RADIUS], [0.0; 3]);
-        let (start, still, mut touched) = (step.path.start(), Vector3::zeros(), Contacts::new());
-        obstacles(&plan, &step).touching(&start, &still, tolerance, None, &mut touched, &mut Counters::default());
+        let still = State { position: step.path.start(), velocity: Vector3::zeros() };
+        let mut touched = Contacts::new();
+        obstacles(&plan, &step).touching(&still, tolerance, None, &mut touched, &mut Counters::default());
         touched
     };
     let sharp = |x: f64| [[x, -4.0, 0.0], [x, 4.0, 0.0], [x, 0.0, -4.0]].map(Point3::from).to_vec();

@@ -54,7 +54,7 @@ impl FacingPlane {
     }
 
     /// Where `step` enters it first, for a ball of `radius`, before `to` or at it; of what comes later, only that there is nothing before.
-    #[inline(never)]
+    #[inline(never)] // it is asked for each plane
     fn entry(&self, step: &Step, radius: f64, to: f64) -> Entry {
         let gap = self.clearance(&step.path.start(), radius);
         let clearance = step.path.clearance(gap, &self.normal);
@@ -145,7 +145,7 @@ impl<'a> Obstacles<'a> {
     }
 
     /// The earliest collision of the step: over all surfaces, the smallest f at which the clearance is <= 0 and falling.
-    #[inline(always)]
+    #[inline(always)] // so that what it finds is not copied
     pub fn earliest(
         &mut self,
         step: &Step,
@@ -167,7 +167,7 @@ impl<'a> Obstacles<'a> {
     }
 
     /// The earliest collision of the step with a plane.
-    #[inline(always)]
+    #[inline(always)] // so that what it finds is not copied
     fn earliest_plane(
         &self,
         step: &Step,
@@ -200,7 +200,7 @@ impl<'a> Obstacles<'a> {
     }
 
     /// Makes `earliest` the collision of the step with a face, if one comes before it.
-    #[inline(never)]
+    #[inline(never)] // beside the loop over planes, which stays small
     fn meet_faces(
         &mut self,
         earliest: &mut Option<Hit>,
@@ -249,14 +249,13 @@ impl<'a> Obstacles<'a> {
         Some(contact_with(hit.surface, Some(touch.site), touch.normal, velocity)).filter(|contact| contact.rate < 0.0)
     }
 
-    /// Makes `touched` the contacts of a ball at `position` with `velocity`, to within `tolerance` (m), each with its rate n.v. If that is where it is at
+    /// Makes `touched` the contacts of a ball in `state`, to within `tolerance` (m), each with its rate n.v. If that is where it is at
     /// `f` of the step that the [`earliest`](Self::earliest) hit was asked for, they need not be looked for again.
     ///
     /// Of contacts whose normals are one to within what the tolerance makes of them, the one that closes fastest stays.
     pub fn touching(
         &self,
-        position: &Point3<f64>,
-        velocity: &Vector3<f64>,
+        state: &State,
         tolerance: f64,
         f: Option<f64>,
         touched: &mut Contacts,
@@ -264,29 +263,29 @@ impl<'a> Obstacles<'a> {
     ) {
         touched.clear();
         for facing in &self.planes {
-            if facing.clearance(position, self.radius) <= tolerance {
-                touched.push(contact_with(facing.surface, None, facing.normal, velocity));
+            if facing.clearance(&state.position, self.radius) <= tolerance {
+                touched.push(contact_with(facing.surface, None, facing.normal, &state.velocity));
             }
         }
         if !self.plan.meshes.is_empty() {
-            self.touch_faces(position, velocity, tolerance, f, touched, counters);
+            self.touch_faces(state, tolerance, f, touched, counters);
         }
         if touched.len() > 1 {
             self.merge(touched, tolerance);
         }
     }
 
-    /// Adds what a ball at `position` with `velocity` touches of the meshes, as [`touching`](Self::touching) is asked for it.
-    #[inline(never)]
+    /// Adds what a ball in `state` touches of the meshes, as [`touching`](Self::touching) is asked for it.
+    #[inline(never)] // beside the loop over planes, which stays small
     fn touch_faces(
         &self,
-        position: &Point3<f64>,
-        velocity: &Vector3<f64>,
+        state: &State,
         tolerance: f64,
         f: Option<f64>,
         touched: &mut Contacts,
         counters: &mut Counters,
     ) {
+        let State { position, velocity } = state;
         for ((surface, mesh), around) in self.plan.meshes.iter().zip(&self.around) {
             let mut work = Work::default();
             let touches = match f {
@@ -301,7 +300,7 @@ impl<'a> Obstacles<'a> {
     }
 
     /// Of contacts whose normals are one, that which closes fastest; then in order.
-    #[inline(never)]
+    #[inline(never)] // there are seldom two
     fn merge(&self, contacts: &mut Contacts, tolerance: f64) {
         contacts.sort_by(|a, b| a.rate.total_cmp(&b.rate).then_with(|| self.order(a, b)));
         let mut kept = 0;
@@ -332,9 +331,9 @@ impl<'a> Obstacles<'a> {
         tolerance: f64,
         counters: &mut Counters,
     ) -> Point3<f64> {
-        let State { mut position, velocity } = *state;
+        let mut position = state.position;
         let mut touched = Contacts::new();
-        self.touching(&position, &velocity, tolerance, None, &mut touched, counters);
+        self.touching(state, tolerance, None, &mut touched, counters);
         for contact in touched.iter().filter(|c| c.site.is_some() && self.bend(c) == Bend::Flat) {
             let Some(gap) = self.gap(contact, &position) else { continue };
             // Of a face, the height is never below 0: it is seen from where the point is.
@@ -363,7 +362,7 @@ impl<'a> Obstacles<'a> {
     }
 
     /// The same for `site` of the mesh that `surface` is.
-    #[inline(never)]
+    #[inline(never)] // beside what is asked of planes, which stays small
     fn gap_at(&self, surface: usize, site: Site, position: &Point3<f64>) -> Option<f64> {
         let (foot, _) = self.mesh(surface)?.foot(site, position)?;
         Some((position - foot).norm() - self.mesh_radius)

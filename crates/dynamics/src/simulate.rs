@@ -216,7 +216,7 @@ impl<O: Observer> Walk<'_, O> {
     }
 
     /// Counts what takes no time to speak of.
-    #[inline(never)]
+    #[inline(never)] // it is seldom asked
     fn stand_still(&mut self) {
         if self.standstill == 0 {
             self.answered.clone_from(self.contacts);
@@ -247,7 +247,7 @@ impl<O: Observer> Walk<'_, O> {
     }
 
     /// Ends the simulation of this ball by a guard, and says so where it is in contact.
-    #[inline(never)]
+    #[inline(never)] // once at most
     fn give_up(&mut self, ending: Ending, kind: EventKind) {
         self.ending = Some(ending);
         self.bound = None;

@@ -112,7 +112,7 @@ impl Clearance {
     /// Lines and parabolas are solved in closed form, to a few units of roundoff; higher degrees to the last bit of f that
     /// the rounded coefficients determine, on the early side. A parabola that touches 0 from above without crossing is
     /// reported as a touch (`rate` 0).
-    #[inline(always)]
+    #[inline(always)] // so that the entry is not copied
     pub fn first_entry(&self, from: f64, to: f64) -> Entry {
         if from > to {
             return Entry::Never;
@@ -137,7 +137,7 @@ impl Clearance {
 }
 
 /// The first f >= 0 where c + b f + a f^2 is <= 0 and falling.
-#[inline(always)]
+#[inline(always)] // so that the entry is not copied
 fn quadratic_entry(c: f64, b: f64, a: f64) -> Entry {
     if c <= 0.0 {
         if b < 0.0 {

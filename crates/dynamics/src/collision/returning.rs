@@ -23,7 +23,7 @@ fn until(back: &Entry) -> f64 {
 
 /// The clearance from a contact along the step: 0 now by definition, and its slope the contact's own rate (plus what a path that
 /// does not begin with the velocity adds).
-#[inline(always)]
+#[inline(always)] // so that what it makes is not copied
 fn leaving(step: &Step, contact: &Contact) -> Clearance {
     let mut c = [0.0, contact.rate * step.seconds, 0.0, 0.0, 0.0];
     // What the ball moves along, it leaves or enters by more than rounding or not at all.
@@ -148,7 +148,7 @@ impl<'a> Departure<'a> {
 
 impl Obstacles<'_> {
     /// Makes `returns` when the path of `step` returns to each of `contacts`; never to a lasting one, along which it moves.
-    #[inline(always)]
+    #[inline(always)] // so that what it makes is not copied
     pub fn returns(&self, step: &Step, contacts: &[Contact], returns: &mut Returns, counters: &mut Counters) {
         returns.clear();
         for contact in contacts {

@@ -86,7 +86,7 @@ impl Adaptive {
 }
 
 /// One step of `h`, and its error in units of what `tolerance` allows.
-#[inline(never)]
+#[inline(never)] // beside the exact flight, whose loop stays small
 fn within(
     tolerance: f64,
     state: &State,
@@ -99,7 +99,7 @@ fn within(
 }
 
 /// One step of `h` seconds, whatever its error.
-#[inline(never)]
+#[inline(never)] // beside the exact flight, whose loop stays small
 pub fn step(state: &State, h: f64, mut acceleration: impl FnMut(&State, f64) -> Vector3<f64>) -> Step {
     attempt(state, h, &mut acceleration).0
 }

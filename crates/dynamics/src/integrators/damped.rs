@@ -39,7 +39,7 @@ impl Damped {
     }
 
     /// A step of at most `remaining` seconds from `state`, where the acceleration is `a` (m/s^2), the part without resistance `constant`.
-    #[inline(never)]
+    #[inline(never)] // beside the exact flight, whose loop stays small
     pub fn step(&mut self, state: &State, remaining: f64, a: &Vector3<f64>, constant: &Vector3<f64>) -> Step {
         let rate = self.rate;
         let speed = state.velocity.norm();

@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 
 /// One step of `h` seconds. Positions and velocities along the path are Hermite cubics, so both are of order 4 at an impact, not
 /// only at the end of the step.
-#[inline(never)]
+#[inline(never)] // beside the exact flight, whose loop stays small
 pub fn step(forces: &Forces, state: &State, h: f64, counters: &mut Counters) -> Step {
     let State { position: x, velocity: v } = *state;
     let mut acceleration =

@@ -99,7 +99,7 @@ impl<O: Observer> Walk<'_, O> {
             self.state.position = self.obstacles.clear_of_faces(&self.state, &a, tolerance, &mut self.counters);
         }
         let State { position, velocity } = self.state;
-        self.obstacles.touching(&position, &velocity, tolerance, None, self.contacts, &mut self.counters);
+        self.obstacles.touching(&self.state, tolerance, None, self.contacts, &mut self.counters);
         let rounding = rate_rounding(velocity.norm());
         self.contacts.retain(|c| {
             let gap = self.obstacles.gap(c, &position);
@@ -123,7 +123,7 @@ impl<O: Observer> Walk<'_, O> {
         let State { position, velocity } = self.state;
         // What slides is put back onto its surface, and is then elsewhere; and only of meshes it matters where.
         let f = (!self.plan.meshes.is_empty() && position == step.path.at(hit.f)).then_some(hit.f);
-        self.obstacles.touching(&position, &velocity, tolerance, f, self.contacts, &mut self.counters);
+        self.obstacles.touching(&self.state, tolerance, f, self.contacts, &mut self.counters);
         for i in 0..self.contacts.len() {
             self.correct(i, tolerance);
             self.contacts[i].rate = self.rate(step, hit, &self.contacts[i], returns);
@@ -181,7 +181,7 @@ impl<O: Observer> Walk<'_, O> {
     ///
     /// What is nearest to the ball is left by less than rounding: the search has seen its neighbour, to which the ball comes nearer (the vertex at the end of an
     /// edge, the face beyond a shallow fold). Either is touched; the one that closes is answered, or it would be found for ever.
-    #[inline(never)]
+    #[inline(never)] // it is seldom asked
     fn add_seen(&mut self, hit: &Hit, velocity: &Vector3<f64>) {
         let place = |c: &Contact| (c.surface, c.site);
         let seen = self.obstacles.seen(hit, &self.state.position, velocity);
@@ -216,7 +216,7 @@ impl<O: Observer> Walk<'_, O> {
 
     /// Whether contacts that lose energy have answered each other without time passing for so long that there is no end to it; then
     /// the contacts are all that took part.
-    #[inline(never)]
+    #[inline(never)] // it is seldom asked
     fn collapses(&mut self, tolerance: f64) -> bool {
         let place = |c: &Contact| (c.surface, c.site);
         for c in self.contacts.iter() {

@@ -344,10 +344,9 @@ impl<O: Observer> Walk<'_, O> {
             return None;
         }
         let tolerance = self.touch_tolerance(0.0);
-        let State { position, velocity } = self.state;
         let mut touched = Contacts::new();
-        self.obstacles.touching(&position, &velocity, tolerance, None, &mut touched, &mut self.counters);
-        let rounding = rate_rounding(velocity.norm());
+        self.obstacles.touching(&self.state, tolerance, None, &mut touched, &mut self.counters);
+        let rounding = rate_rounding(self.state.velocity.norm());
         let rises = |c: &&Contact| c.surface == contact.surface && c.site != contact.site && c.rate < -rounding;
         touched.iter().find(rises).and_then(|c| Some((c.surface, c.site?.face())))
     }

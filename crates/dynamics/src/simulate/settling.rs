@@ -66,7 +66,7 @@ impl<O: Observer> Walk<'_, O> {
     }
 
     /// Holds what the ball no longer bounces on; says whether that carries it.
-    #[inline(never)]
+    #[inline(never)] // most impacts bounce on
     fn hold(&mut self, a: &Vector3<f64>, left: Option<&Contact>) -> bool {
         let sliding = self.motion == Motion::Sliding;
         let carriers = self.carriers();

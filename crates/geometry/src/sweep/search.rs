@@ -63,8 +63,7 @@ impl Mesh {
                 search.begin(0.0, last, within, doubt);
                 faces.iter().for_each(|&face| search.consider(face, self.triangle_from(face, &start)));
                 search.conclude();
-                (around.left, around.put_off, *work) = (search.left, search.put_off, search.work);
-                return search.best;
+                return search.end(around, work);
             }
         }
         let sagitta_limit = SAGITTA_SHARE * ball.radius.max(self.face_size());
@@ -111,8 +110,7 @@ impl Mesh {
                 break;
             }
         }
-        (around.left, around.put_off, *work) = (search.left, search.put_off, search.work);
-        search.best
+        search.end(around, work)
     }
 
     /// The first contact with a face that the ball leaves by a short hop: most such hops end there.
@@ -267,6 +265,12 @@ impl<F: Fn(u32) -> f64> Search<'_, F> {
         }
         self.put_off.later.clear();
         self.put_off.hidden.clear();
+    }
+
+    /// What was found; what the ball has seen and what was looked at goes to where it is kept.
+    fn end(self, around: &mut Surroundings, work: &mut Work) -> Option<FirstContact> {
+        (around.left, around.put_off, *work) = (self.left, self.put_off, self.work);
+        self.best
     }
 }
 
